@@ -1,0 +1,18 @@
+//! The contract: what a BSDF is to gonio. Conventions: local shading frame,
+//! +z the normal, directions point away from the surface, `wo` is given and
+//! `wi` is sampled, `eval` is f in sr⁻¹ without the cosine, `pdf` is per
+//! steradian.
+
+mod claims;
+mod description;
+mod direction;
+mod sample;
+mod spectrum;
+mod subject;
+
+pub use claims::{Claims, Cosine, OffSupport, RandomNumbers, Transport, TransportModes};
+pub use description::{Description, Has, Precision};
+pub use direction::Direction;
+pub use sample::{Lobe, Sample, Samples};
+pub use spectrum::{MAX_CHANNELS, Spectrum};
+pub use subject::{Bsdf, Subject, SubjectError};

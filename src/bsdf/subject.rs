@@ -1,0 +1,168 @@
+//! The two interfaces: [`Bsdf`] is what an author writes, [`Subject`] what the
+//! harness calls.
+
+use super::{Description, Direction, Sample, Samples, Spectrum, Transport};
+
+/// What a material author implements. One direction at a time, easy to write.
+///
+/// `wo` is given, `wi` is sampled; both point away from the surface, z is the
+/// normal. Every `Bsdf` is a [`Subject`].
+pub trait Bsdf: Send + Sync {
+    /// Name, channels, dimensions of u, precision, claims.
+    fn describe(&self) -> Description;
+    /// The BSDF value f in sr⁻¹ per channel, cosine excluded, without discrete lobes.
+    fn eval(&self, wo: Direction, wi: Direction, transport: Transport) -> Spectrum;
+    /// Density of `sample` in `wi` given `wo`, in sr⁻¹, without discrete lobes.
+    fn pdf(&self, wo: Direction, wi: Direction, transport: Transport) -> f64;
+    /// Draws a direction from `u` in [0,1)^d; `None` where there is no sample.
+    fn sample(&self, wo: Direction, u: &[f64], transport: Transport) -> Option<Sample>;
+    /// Directions near which pdf or eval may have a narrow peak that nobody
+    /// would guess. Mirror, refracted and retro-reflected directions are
+    /// looked at anyway.
+    fn hints(&self, _wo: Direction) -> Vec<Direction> {
+        Vec::new()
+    }
+}
+
+/// What the harness calls: batches with one `wo`, fallible. A [`Bsdf`] is one
+/// for free; plugins implement it directly.
+pub trait Subject: Send + Sync {
+    /// Name, channels, dimensions of u, precision, claims.
+    fn describe(&self) -> Description;
+    /// Values for each row of `wi` into `out` (row-major, `wi.len()` × channels).
+    fn eval(
+        &self,
+        wo: Direction,
+        wi: &[Direction],
+        transport: Transport,
+        out: &mut [f64],
+    ) -> Result<(), SubjectError>;
+    /// Densities for each row of `wi` into `out` (`wi.len()` values).
+    fn pdf(
+        &self,
+        wo: Direction,
+        wi: &[Direction],
+        transport: Transport,
+        out: &mut [f64],
+    ) -> Result<(), SubjectError>;
+    /// One draw for each row of `u` (row-major, n × dimensions) into `out`,
+    /// which comes cleared and with its channels set.
+    fn sample(
+        &self,
+        wo: Direction,
+        u: &[f64],
+        transport: Transport,
+        out: &mut Samples,
+    ) -> Result<(), SubjectError>;
+    /// As [`Bsdf::hints`].
+    fn hints(&self, _wo: Direction) -> Vec<Direction> {
+        Vec::new()
+    }
+}
+
+/// Why a subject could not be measured.
+#[derive(Clone, Debug, PartialEq, thiserror::Error)]
+pub enum SubjectError {
+    /// It panicked.
+    #[error("{function}() panicked: {message}")]
+    Panicked {
+        /// Which function.
+        function: &'static str,
+        /// The panic message with its place.
+        message: String,
+    },
+    /// It returned a spectrum or batch of another length than it described.
+    #[error("{function}() returned {got} values where {expected} were described")]
+    WrongLength {
+        /// Which function.
+        function: &'static str,
+        /// As described.
+        expected: usize,
+        /// As returned.
+        got: usize,
+    },
+    /// It did not return in time.
+    #[error("took longer than the time limit of {limit_s} s: {state}")]
+    TimedOut {
+        /// The limit in seconds.
+        limit_s: f64,
+        /// What it was doing.
+        state: String,
+    },
+    /// It crashed, hung or broke the protocol; the text says how.
+    #[error("{0}")]
+    Broken(String),
+}
+
+impl<B: Bsdf> Subject for B {
+    fn describe(&self) -> Description {
+        Bsdf::describe(self)
+    }
+
+    fn eval(
+        &self,
+        wo: Direction,
+        wi: &[Direction],
+        transport: Transport,
+        out: &mut [f64],
+    ) -> Result<(), SubjectError> {
+        if wi.is_empty() {
+            return Ok(());
+        }
+        let channels = out.len() / wi.len();
+        for (wi, row) in wi.iter().zip(out.chunks_exact_mut(channels)) {
+            let value = Bsdf::eval(self, wo, *wi, transport);
+            if value.len() != channels {
+                return Err(SubjectError::WrongLength {
+                    function: "eval",
+                    expected: channels,
+                    got: value.len(),
+                });
+            }
+            row.copy_from_slice(&value);
+        }
+        Ok(())
+    }
+
+    fn pdf(
+        &self,
+        wo: Direction,
+        wi: &[Direction],
+        transport: Transport,
+        out: &mut [f64],
+    ) -> Result<(), SubjectError> {
+        for (wi, p) in wi.iter().zip(out) {
+            *p = Bsdf::pdf(self, wo, *wi, transport);
+        }
+        Ok(())
+    }
+
+    fn sample(
+        &self,
+        wo: Direction,
+        u: &[f64],
+        transport: Transport,
+        out: &mut Samples,
+    ) -> Result<(), SubjectError> {
+        let dimensions = Bsdf::describe(self).dimensions;
+        let mut draw = |u: &[f64]| {
+            let sample = Bsdf::sample(self, wo, u, transport);
+            match sample {
+                Some(s) if s.weight.len() != out.channels => Err(SubjectError::WrongLength {
+                    function: "sample",
+                    expected: out.channels,
+                    got: s.weight.len(),
+                }),
+                sample => {
+                    out.push(sample);
+                    Ok(())
+                }
+            }
+        };
+        u.chunks_exact(dimensions.max(1)).try_for_each(&mut draw)
+    }
+
+    fn hints(&self, wo: Direction) -> Vec<Direction> {
+        Bsdf::hints(self, wo)
+    }
+}

@@ -1,0 +1,5 @@
+//! A goniophotometer for material code.
+
+pub mod bsdf;
+pub mod models;
+pub mod registry;

@@ -1,0 +1,3 @@
+//! The `gonio` command.
+
+fn main() {}

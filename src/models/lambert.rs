@@ -1,0 +1,90 @@
+//! Lambert's ideally diffuse reflector.
+
+use crate::bsdf::{Bsdf, Description, Direction, Lobe, Sample, Spectrum, Transport};
+use crate::registry::Model;
+use std::f64::consts::PI;
+
+/// How [`Lambert`] draws directions.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub enum HemisphereSampling {
+    /// p = cos θi / π.
+    Cosine,
+    /// p = 1 / 2π.
+    Uniform,
+}
+
+/// Ideally diffuse reflection, f = ρ/π on the front side (J. H. Lambert,
+/// *Photometria*, 1760).
+#[derive(Clone, Copy, Debug)]
+pub struct Lambert {
+    /// Reflectance ρ in [0, 1].
+    pub reflectance: f64,
+    /// How directions are drawn.
+    pub sampling: HemisphereSampling,
+}
+
+/// The registered model `lambert`.
+pub(super) fn model() -> Model {
+    Model::new("lambert", "ideally diffuse reflection, f = ρ/π (Lambert 1760)", |p| {
+        Ok(Lambert {
+            reflectance: p.number("reflectance"),
+            sampling: match p.text("sampling") {
+                "uniform" => HemisphereSampling::Uniform,
+                _ => HemisphereSampling::Cosine,
+            },
+        })
+    })
+    .number("reflectance", 0.8, 0.0..=1.0, "share of the light that is reflected")
+    .choice("sampling", &["cosine", "uniform"], "density of sampled directions")
+}
+
+/// A direction of the upper hemisphere with density cos θ/π, by Malley's
+/// method over the polar map of the disc.
+pub(super) fn sample_cosine(u: &[f64]) -> Direction {
+    let r = u[0].sqrt();
+    let (sin, cos) = (2.0 * PI * u[1]).sin_cos();
+    Direction::new(r * cos, r * sin, (1.0 - u[0]).sqrt())
+}
+
+impl Bsdf for Lambert {
+    fn describe(&self) -> Description {
+        Description::new("lambert").dimensions(2).claims(|c| {
+            c.isotropic = true;
+            c.lossless = self.reflectance == 1.0;
+        })
+    }
+
+    fn eval(&self, wo: Direction, wi: Direction, _: Transport) -> Spectrum {
+        let lit = wo.z > 0.0 && wi.z > 0.0;
+        Spectrum::from(if lit { self.reflectance / PI } else { 0.0 })
+    }
+
+    fn pdf(&self, wo: Direction, wi: Direction, _: Transport) -> f64 {
+        if wo.z <= 0.0 || wi.z <= 0.0 {
+            return 0.0;
+        }
+        match self.sampling {
+            HemisphereSampling::Cosine => wi.z / PI,
+            HemisphereSampling::Uniform => 0.5 / PI,
+        }
+    }
+
+    fn sample(&self, wo: Direction, u: &[f64], transport: Transport) -> Option<Sample> {
+        if wo.z <= 0.0 {
+            return None;
+        }
+        let wi = match self.sampling {
+            HemisphereSampling::Cosine => sample_cosine(u),
+            HemisphereSampling::Uniform => {
+                // z in (0, 1], so that u = 0 does not touch the horizon.
+                let z = 1.0 - u[0];
+                let r = (u[0] * (1.0 + z)).sqrt();
+                let (sin, cos) = (2.0 * PI * u[1]).sin_cos();
+                Direction::new(r * cos, r * sin, z)
+            }
+        };
+        let pdf = Bsdf::pdf(self, wo, wi, transport);
+        let weight = Bsdf::eval(self, wo, wi, transport) * (wi.z / pdf);
+        (pdf > 0.0).then_some(Sample { wi, weight, pdf, lobe: Lobe::DIFFUSE_REFLECTION })
+    }
+}
