@@ -329,7 +329,7 @@ impl Registry {
     }
 
     /// Adds a model; one of the same name is replaced.
-    pub fn add(mut self, model: Model) -> Self {
+    pub fn register(mut self, model: Model) -> Self {
         self.models.retain(|m| m.name != model.name);
         self.models.push(model);
         self

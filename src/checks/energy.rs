@@ -1,0 +1,85 @@
+//! No direction gives back more flux than arrives.
+
+use super::outcome::{Check, Effect, Judgement, Outcome, Terms, Verdict, needs_determinism, needs_functions};
+use crate::bsdf::{Description, Precision};
+use crate::evidence::{Evidence, Measurement};
+
+/// ∫s f|cos θi| + Σ s P_k w_k ≤ 1 for every channel, with the flux factor s =
+/// (η_i/η_o)² of transmission in radiance mode.
+pub struct Energy;
+
+/// The flux that leaves, of the channel where it is largest (or farthest from
+/// 1), and the cubature's error: (channel, flux, error).
+pub(super) fn flux(evidence: &Evidence, farthest: bool) -> Option<(usize, f64, f64)> {
+    let (partition, integrals) = (evidence.partition.as_ref()?, evidence.integrals.as_ref()?);
+    let claims = &evidence.description.claims;
+    let front = evidence.wo.z > 0.0;
+    let factor = |front_i: bool| claims.flux_factor(front, front_i, evidence.transport);
+    let channels = evidence.description.channels.len();
+    let discrete = &evidence.draws.first()?.discrete;
+    let each = (0..channels).map(|c| {
+        let mut flux = 0.0;
+        for leaf in 0..partition.len() {
+            flux += factor(partition.leaf_cell(leaf).is_front()) * integrals.value[leaf * channels + c];
+        }
+        for d in discrete {
+            flux += factor(d.wi.z > 0.0) * d.probability * d.weight[c];
+        }
+        let error = integrals.value_error[c] * factor(!front).max(1.0);
+        (c, flux, error)
+    });
+    let size = |flux: f64| if farthest { (flux - 1.0).abs() } else { flux };
+    each.max_by(|a, b| size(a.1).total_cmp(&size(b.1)))
+}
+
+/// What flux may exceed 1 by: five times the cubature's goal, or rounding.
+fn tolerance(precision: Precision) -> f64 {
+    match precision {
+        Precision::F64 => 1e-4,
+        Precision::F32 => 1e-3,
+    }
+}
+
+impl Check for Energy {
+    fn id(&self) -> &'static str {
+        "energy"
+    }
+
+    fn hypothesis(&self) -> &'static str {
+        "∫s f|cos θi| + Σ s P_k w_k ≤ 1, with s = (η_i/η_o)² in radiance mode"
+    }
+
+    fn needs(&self) -> &'static [Measurement] {
+        &[Measurement::Integrals, Measurement::Draws]
+    }
+
+    fn applies(&self, description: &Description) -> Result<(), String> {
+        if !description.claims.energy_conserving {
+            return Err("energy_conserving is not claimed".into());
+        }
+        needs_functions(description, true, false, false)?;
+        needs_determinism(description)
+    }
+
+    fn judge(&self, evidence: &Evidence, _: &Terms) -> Judgement {
+        let Some(integrals) = &evidence.integrals else { return Judgement::Missing };
+        if let Err(reason) = integrals.reliable() {
+            return Outcome::inconclusive(reason).into();
+        }
+        let Some((channel, flux, error)) = flux(evidence, false) else { return Judgement::Missing };
+        let tolerance = tolerance(evidence.description.precision);
+        let effect = Effect::interval("flux − 1", (flux - 1.0, flux - 1.0 - error, flux - 1.0 + error), tolerance);
+        let outcome = Outcome {
+            effect: Some(effect),
+            channel: Some(channel),
+            detection_limit: Some(tolerance + error),
+            ..Outcome::new(Verdict::Pass, format!("flux {flux:.5} ≤ 1"))
+        };
+        if flux - error > 1.0 + tolerance {
+            let name = &evidence.description.channels[channel];
+            let message = format!("flux {flux:.5} of channel {name} leaves where 1 arrives");
+            return Outcome { verdict: Verdict::Fail, message, ..outcome }.into();
+        }
+        outcome.into()
+    }
+}

@@ -1,0 +1,274 @@
+//! Samples follow pdf.
+
+use super::outcome::{
+    Check, Effect, Judgement, Outcome, POWER, Terms, Verdict, needs_determinism, needs_functions,
+};
+use crate::bsdf::Description;
+use crate::evidence::{Draws, Evidence, Measurement, Place};
+use crate::sphere::Partition;
+use crate::statistics::multiscale::{Haar, MIN_EXPECTED, Pooled, Tree, haar_largest, haar_levels, level_cut, pearson};
+use crate::statistics::{binomial, chi_square, effect, noncentral};
+
+/// A single cell may be off by this many times the RMS tolerance: the local
+/// guard that keeps an error of half a small cell from hiding in an RMS
+/// (METHOD §3).
+const GUARD: f64 = 5.0;
+
+/// p-values this near to 1 say that samples are more even than chance allows.
+const TOO_EVEN: f64 = 1e-6;
+
+/// Draws fall into cells as ∫pdf says, draws without a continuous sample being
+/// a cell of their own ("raw"); and so do the continuous ones among each
+/// other ("shape"). Pearson's X² on the cell tree cut at every depth, each
+/// against a non-central χ² of the tolerance, so that only an error certainly
+/// larger fails; and a binomial guard on each node.
+pub struct GoodnessOfFit;
+
+/// The tree of cells below a root that also holds the draws without a
+/// continuous sample.
+struct Cells {
+    children: Vec<Option<(usize, usize)>>,
+    mass: Vec<f64>,
+    counts: Vec<u64>,
+}
+
+/// Nodes of the partition follow these two: all draws, and the draws without
+/// a continuous sample.
+const OUTER: usize = 2;
+
+impl Cells {
+    fn new(partition: &Partition, masses: &[f64], draws: &Draws) -> Self {
+        let inner_mass = partition.sum_up(masses);
+        let inner_counts = partition.sum_up(&draws.counts);
+        let rest = (1.0 - inner_mass[0]).max(0.0);
+        let mut children = vec![Some((1, OUTER)), None];
+        let mut mass = vec![inner_mass[0] + rest, rest];
+        let mut counts = vec![draws.samples, draws.samples - inner_counts[0]];
+        for node in 0..partition.nodes() {
+            children.push(partition.children(node).map(|[l, r]| (l + OUTER, r + OUTER)));
+        }
+        mass.extend(inner_mass);
+        counts.extend(inner_counts);
+        Self { children, mass, counts }
+    }
+
+    fn raw(&self) -> Option<Pooled> {
+        let tree = Tree::new(&self.children, &self.mass, &self.counts).ok()?;
+        Some(tree.pool(self.counts[0] as f64, MIN_EXPECTED))
+    }
+
+    fn shape(&self) -> Option<Pooled> {
+        let children: Vec<_> =
+            self.children[OUTER..].iter().map(|c| c.map(|(l, r)| (l - OUTER, r - OUTER))).collect();
+        let tree = Tree::new(&children, &self.mass[OUTER..], &self.counts[OUTER..]).ok()?;
+        Some(tree.pool_shape(MIN_EXPECTED))
+    }
+}
+
+/// Pearson's X² and degrees of freedom of the tree cut at each depth that
+/// differs from the one above.
+fn levels(tree: &Pooled) -> Vec<(f64, f64)> {
+    (1..=tree.depth()).map(|d| pearson(&tree.counts(&level_cut(tree, d)))).filter(|l| l.1 > 0.0).collect()
+}
+
+/// p at ε = 0 of the tree: the smallest over the levels, times their number.
+fn strict_ln_p(levels: &[(f64, f64)]) -> f64 {
+    let least = levels.iter().map(|(x2, dof)| chi_square::ln_sf(*x2, *dof)).fold(0.0, f64::min);
+    (least + (levels.len().max(1) as f64).ln()).min(0.0)
+}
+
+/// The ε = 0 p-values of the levels' own sums of z², which are independent of
+/// each other and uniform under the null: what calibration looks at. From
+/// the first draws.
+pub fn level_p_values(evidence: &Evidence) -> Vec<f64> {
+    let (Some(partition), Some(integrals), Some(draws)) =
+        (&evidence.partition, &evidence.integrals, evidence.draws.first())
+    else {
+        return Vec::new();
+    };
+    let Some(tree) = Cells::new(partition, &integrals.pdf, draws).shape() else { return Vec::new() };
+    // A level with few terms is discrete where counts are small; 20 per cell and
+    // a few cells make it smooth.
+    haar_levels(&tree.haar()).iter().filter(|(_, dof)| *dof >= 1.0).map(|(s, dof)| chi_square::sf(*s, *dof)).collect()
+}
+
+/// Where a node lies, for a sentence.
+fn region(partition: &Partition, node: usize) -> String {
+    if node < OUTER {
+        return "without a continuous sample".into();
+    }
+    let cell = partition.node_cell(node - OUTER);
+    let centre = partition.chart().to_direction(cell.at(0.5, 0.5));
+    format!(
+        "around θ = {:.1}°, φ = {:.0}°",
+        centre.theta().to_degrees(),
+        centre.phi().to_degrees().rem_euclid(360.0)
+    )
+}
+
+/// The split that deviates most, in words.
+fn deviation(partition: &Partition, tree: &Pooled, h: &Haar) -> String {
+    let side = |k: usize| region(partition, tree.nodes[k].node);
+    let (more, less) = if h.z > 0.0 { (h.left, h.right) } else { (h.right, h.left) };
+    format!("too many {} and too few {} by {:.1} σ", side(more), side(less), h.z.abs())
+}
+
+impl Check for GoodnessOfFit {
+    fn id(&self) -> &'static str {
+        "goodness-of-fit"
+    }
+
+    fn hypothesis(&self) -> &'static str {
+        "samples follow pdf, no-sample cell included; raw and shape-only"
+    }
+
+    fn needs(&self) -> &'static [Measurement] {
+        &[Measurement::Integrals, Measurement::Draws]
+    }
+
+    fn applies(&self, description: &Description) -> Result<(), String> {
+        needs_functions(description, false, true, true)?;
+        needs_determinism(description)
+    }
+
+    fn is_statistical(&self) -> bool {
+        true
+    }
+
+    fn judge(&self, evidence: &Evidence, terms: &Terms) -> Judgement {
+        let (Some(partition), Some(integrals)) = (&evidence.partition, &evidence.integrals) else {
+            return Judgement::Missing;
+        };
+        if let Err(reason) = integrals.reliable() {
+            return Outcome::inconclusive(reason).into();
+        }
+        let Some(draws) = evidence.draws.get(terms.attempt) else { return Judgement::Missing };
+        if draws.continuous() == 0 && integrals.mass().0 == 0.0 {
+            let reason = "there is no continuous lobe: pdf is 0 everywhere and no continuous sample came";
+            return Outcome::skipped(reason).into();
+        }
+        against(evidence, partition, &integrals.pdf, draws, terms)
+    }
+}
+
+/// Judges draws against the masses of the leaves, the subject's own or those
+/// of a reference.
+pub(super) fn against(
+    evidence: &Evidence,
+    partition: &Partition,
+    masses: &[f64],
+    draws: &Draws,
+    terms: &Terms,
+) -> Judgement {
+    let n = draws.samples;
+    let cells = Cells::new(partition, masses, draws);
+    let (Some(raw), Some(shape)) = (cells.raw(), cells.shape()) else {
+        return Outcome::inconclusive("the integrals of pdf are not a distribution over cells").into();
+    };
+    let (raw_levels, shape_levels) = (levels(&raw), levels(&shape));
+    // Each level and the guard spend an equal part.
+    let ln_part = terms.ln_tail - ((raw_levels.len() + 1) as f64).ln();
+    let lambda = n as f64 * terms.tolerance * terms.tolerance;
+    let smallest = MIN_EXPECTED / n as f64;
+    let mut worst_level = (0.0, 0.0, 0.0f64);
+    for &(x2, dof) in &raw_levels {
+        let beyond = x2 > effect::normal_bound(dof, n, terms.tolerance, smallest, ln_part);
+        let ln_p = noncentral::ln_sf(x2, dof, lambda);
+        // Where the error may sit in one small cell, the normal bound decides.
+        let ln_p = if beyond { ln_p } else { ln_p.max(ln_part) };
+        if ln_p < worst_level.2 || worst_level.1 == 0.0 {
+            worst_level = (x2, dof, ln_p);
+        }
+    }
+    let guard = guard(&raw, n, terms);
+    let spent = (raw_levels.len() + 1) as f64;
+    let ln_p = (worst_level.2.min(guard.0) + spent.ln()).min(0.0);
+
+    let (x2, dof, _) = worst_level;
+    let own_effect = effect::root_d(x2, dof.max(1.0), n);
+    let (shape_p, raw_p) = (strict_ln_p(&shape_levels), strict_ln_p(&raw_levels));
+    let largest = haar_largest(&raw.haar());
+    let place = largest.map(|h| deviation(partition, &raw, &h)).unwrap_or_default();
+    let outcome = Outcome {
+        certain: false,
+        effect: Some(Effect::interval("RMS relative cell error √D", own_effect, terms.tolerance)),
+        ln_p: Some(ln_p),
+        ln_threshold: Some(terms.ln_tail),
+        samples: n,
+        ..Outcome::new(Verdict::Pass, String::new())
+    };
+    if ln_p < terms.ln_tail {
+        let worst = largest.filter(|h| h.node >= OUTER).map(|h| {
+            let cell = partition.node_cell(h.node - OUTER);
+            let wi = partition.chart().to_direction(cell.at(0.5, 0.5));
+            Place::pair(evidence.wo, wi).value("σ", h.z)
+        });
+        let split = if shape_p < terms.ln_tail { "shape too" } else { "shape passes: a factor of wo alone" };
+        let message = format!(
+            "samples are off pdf by {} RMS ({} to {}) on {:.0} cells; {split}; {}",
+            percent(own_effect.0),
+            percent(own_effect.1),
+            percent(own_effect.2),
+            dof + 1.0,
+            place
+        );
+        return Outcome { verdict: Verdict::Fail, message, worst, ..outcome }.into();
+    }
+    if terms.next.is_some() {
+        return terms.settle(outcome);
+    }
+    // The level whose limit is best, and that limit.
+    let limit = raw_levels
+        .iter()
+        .map(|(_, dof)| {
+            let threshold = effect::guarded_threshold(*dof, n, terms.tolerance, smallest, ln_part);
+            (effect::detection_limit(*dof, n, threshold, POWER), dof + 1.0)
+        })
+        .min_by(|a, b| a.0.total_cmp(&b.0));
+    let (limit, limit_cells) = limit.unwrap_or((f64::INFINITY, 0.0));
+    let even = if chi_square_lower(&shape_levels) < TOO_EVEN {
+        "; samples are more even than chance: stratified, or u is ignored?"
+    } else {
+        ""
+    };
+    let message = format!(
+        "samples follow pdf: p = {:.2} raw, {:.2} shape (ε = 0); an error of {} RMS on {limit_cells:.0} cells would have been seen{even}",
+        raw_p.exp(),
+        shape_p.exp(),
+        percent(limit)
+    );
+    terms.settle(Outcome { message, detection_limit: Some(limit), ..outcome })
+}
+
+/// The local guard: the smallest ln p, over all nodes, of a count were the
+/// node's mass off by [`GUARD`] tolerances; corrected for their number.
+fn guard(tree: &Pooled, n: u64, terms: &Terms) -> (f64, usize) {
+    let slack = GUARD * terms.tolerance;
+    let mut worst = (0.0f64, 0);
+    for cell in tree.nodes.iter().skip(1) {
+        let p = cell.expected / n as f64;
+        let (low, high) = (p * (1.0 - slack), (p * (1.0 + slack)).min(1.0));
+        let share = cell.observed as f64 / n as f64;
+        let ln_p = if share > high {
+            binomial::ln_upper_tail(cell.observed, n, high)
+        } else if share < low {
+            binomial::ln_lower_tail(cell.observed, n, low.min(1.0))
+        } else {
+            continue;
+        };
+        if ln_p < worst.0 {
+            worst = (ln_p, cell.node);
+        }
+    }
+    ((worst.0 + (2.0 * tree.nodes.len() as f64).ln()).min(0.0), worst.1)
+}
+
+/// The probability of even smaller sums than seen at the finest level.
+fn chi_square_lower(levels: &[(f64, f64)]) -> f64 {
+    levels.last().map_or(1.0, |(x2, dof)| noncentral::cdf(*x2, *dof, 0.0))
+}
+
+/// As people read small ratios.
+fn percent(ratio: f64) -> String {
+    format!("{:.2} %", 100.0 * ratio)
+}

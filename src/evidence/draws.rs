@@ -1,0 +1,360 @@
+//! Draws from a subject's sampler, counted in the cells of a partition.
+
+use super::figure::Figure;
+use super::meter::{Halt, Meter};
+use super::setup::Setup;
+use super::tally::{Place, Tally};
+use crate::bsdf::{Direction, Lobe, Precision, Samples};
+use crate::sphere::Partition;
+use serde::{Deserialize, Serialize};
+use std::f64::consts::PI;
+
+/// Draws of a block: one random stream each (METHOD §6).
+pub const BLOCK: u64 = 4096;
+
+/// One in so many draws of the sampler is matched by a draw of the cosine,
+/// for multiple importance sampling.
+const PER_LIGHT: u64 = 8;
+
+/// More different discrete directions than this are not told apart.
+const MOST_DISCRETE: usize = 16;
+
+/// Coarse cells of the table of serial pairs.
+pub const SERIAL: usize = 16;
+
+/// A discrete lobe as it was met in the draws.
+#[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
+pub struct DiscreteLobe {
+    /// Its direction.
+    pub wi: Direction,
+    /// Its flags.
+    pub lobe: Lobe,
+    /// The probability that it claims (`sample.pdf`).
+    pub probability: f64,
+    /// Its weight per channel.
+    pub weight: Vec<f64>,
+    /// Times drawn.
+    pub count: u64,
+    /// Largest relative difference of probability or weight between its draws.
+    pub spread: Tally,
+}
+
+/// Sums of a bounded quantity over draws.
+#[derive(Clone, Debug, Default, PartialEq, Serialize, Deserialize)]
+pub struct Sums {
+    /// Number of draws.
+    pub count: u64,
+    /// Sum per channel.
+    pub sum: Vec<f64>,
+    /// Sum of squares per channel.
+    pub square: Vec<f64>,
+    /// Largest over all channels.
+    pub largest: Figure,
+}
+
+impl Sums {
+    fn new(channels: usize) -> Self {
+        Self { count: 0, sum: vec![0.0; channels], square: vec![0.0; channels], largest: Figure(0.0) }
+    }
+
+    /// Adds a block's sums, which were made apart so that the order of
+    /// additions does not depend on who computed what.
+    fn append(&mut self, block: &Self) {
+        self.count += block.count;
+        for (to, from) in self.sum.iter_mut().zip(&block.sum) {
+            *to += from;
+        }
+        for (to, from) in self.square.iter_mut().zip(&block.square) {
+            *to += from;
+        }
+        self.largest = Figure(self.largest.0.max(block.largest.0));
+    }
+
+    #[inline]
+    fn add(&mut self, c: usize, value: f64) {
+        self.sum[c] += value;
+        self.square[c] += value * value;
+        if value > self.largest.0 {
+            self.largest = Figure(value);
+        }
+    }
+
+    /// Mean and variance of a channel.
+    pub fn moments(&self, channel: usize) -> (f64, f64) {
+        let n = self.count.max(1) as f64;
+        let mean = self.sum[channel] / n;
+        (mean, (self.square[channel] / n - mean * mean).max(0.0))
+    }
+}
+
+/// What `samples` draws of one attempt gave.
+#[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
+pub struct Draws {
+    /// 0 is the first look, 1 its confirmation with other random numbers.
+    pub attempt: u32,
+    /// Number of draws.
+    pub samples: u64,
+    /// Continuous samples by leaf.
+    pub counts: Vec<u64>,
+    /// Draws without a sample.
+    pub none: u64,
+    /// Discrete lobes met.
+    pub discrete: Vec<DiscreteLobe>,
+    /// Draws of discrete directions beyond those told apart.
+    pub discrete_overflow: u64,
+    /// Samples in cells without pdf: pdf(wi) there must not be 0.
+    pub zero_pdf: Tally,
+    /// Weights, all draws counted.
+    pub weight: Sums,
+    /// The heaviest sample.
+    pub heaviest: Option<Place>,
+    /// The sampler's part of multiple importance sampling with the cosine by
+    /// the balance heuristic.
+    pub mis_sampler: Sums,
+    /// The cosine's part.
+    pub mis_cosine: Sums,
+    /// Pairs of successive samples in [`SERIAL`]² coarse cells.
+    pub serial: Vec<u64>,
+}
+
+/// Density of the cosine distribution that MIS is tried with, over the sides
+/// where light may leave.
+pub fn cosine_density(setup: &Setup, wi: Direction) -> f64 {
+    let reflects = setup.claims.reflective && wi.same_side(setup.wo);
+    let transmits = setup.claims.transmissive && wi.z * setup.wo.z < 0.0;
+    let sides = f64::from(u8::from(setup.claims.reflective) + u8::from(setup.claims.transmissive));
+    if reflects || transmits { wi.abs_cos_theta() / (PI * sides) } else { 0.0 }
+}
+
+/// A direction of that distribution.
+fn cosine_direction(setup: &Setup, u: [f64; 3]) -> Direction {
+    let r = u[0].sqrt();
+    let (sin, cos) = (2.0 * PI * u[1]).sin_cos();
+    let z = (1.0 - u[0]).sqrt().copysign(setup.wo.z);
+    let other = match (setup.claims.reflective, setup.claims.transmissive) {
+        (true, true) => u[2] < 0.5,
+        (reflective, _) => !reflective,
+    };
+    Direction::new(r * cos, r * sin, if other { -z } else { z })
+}
+
+/// Scratch space of a block.
+#[derive(Default)]
+struct Scratch {
+    u: Vec<f64>,
+    samples: Samples,
+    points: Vec<[f64; 2]>,
+    leaves: Vec<u32>,
+    value: Vec<f64>,
+    density: Vec<f64>,
+    lights: Vec<Direction>,
+}
+
+impl Draws {
+    /// No draw yet.
+    pub fn new(attempt: u32, leaves: usize, channels: usize) -> Self {
+        Self {
+            attempt,
+            samples: 0,
+            counts: vec![0; leaves],
+            none: 0,
+            discrete: Vec::new(),
+            discrete_overflow: 0,
+            zero_pdf: Tally::new(0.0),
+            weight: Sums::new(channels),
+            heaviest: None,
+            mis_sampler: Sums::new(channels),
+            mis_cosine: Sums::new(channels),
+            serial: vec![0; SERIAL * SERIAL],
+        }
+    }
+
+    /// Number of continuous samples.
+    pub fn continuous(&self) -> u64 {
+        self.counts.iter().sum()
+    }
+
+    /// Number of discrete samples.
+    pub fn discrete(&self) -> u64 {
+        self.discrete.iter().map(|d| d.count).sum::<u64>() + self.discrete_overflow
+    }
+
+    /// Draws on to `samples` in all (whole blocks). `pdf_of_leaf` are the masses
+    /// of the leaves: samples where it is exactly 0 are looked at singly.
+    pub fn extend(
+        &mut self,
+        meter: &Meter,
+        setup: &Setup,
+        partition: &Partition,
+        pdf_of_leaf: &[f64],
+        samples: u64,
+    ) -> Result<(), Halt> {
+        let mut scratch = Scratch::default();
+        let serial_cell = serial_cells(partition);
+        while self.samples < samples {
+            self.block(meter, setup, partition, pdf_of_leaf, &serial_cell, &mut scratch)?;
+        }
+        Ok(())
+    }
+
+    fn block(
+        &mut self,
+        meter: &Meter,
+        setup: &Setup,
+        partition: &Partition,
+        pdf_of_leaf: &[f64],
+        serial_cell: &[u8],
+        scratch: &mut Scratch,
+    ) -> Result<(), Halt> {
+        let stage = if self.attempt == 0 { "draws" } else { "confirmation" };
+        let mut stream = setup.key.clone().with("stage", stage).block(self.samples / BLOCK);
+        let Scratch { u, samples, points, leaves, value, density, lights } = scratch;
+        u.resize(BLOCK as usize * meter.dimensions(), 0.0);
+        stream.fill(meter.coarse_u(), u);
+        meter.sample(setup.wo, u, setup.transport, samples)?;
+
+        points.clear();
+        points.extend(samples.wi.iter().map(|wi| partition.chart().to_point(*wi)));
+        partition.locate_all(points, leaves);
+
+        let channels = samples.channels;
+        let mut weight = Sums::new(channels);
+        let mut mis = Sums::new(channels);
+        (weight.count, mis.count) = (BLOCK, BLOCK);
+        let mut previous: Option<u8> = None;
+        for k in 0..samples.len() {
+            let lobe = samples.lobe[k];
+            if !lobe.is_valid() {
+                self.none += 1;
+                continue;
+            }
+            let (wi, pdf) = (samples.wi[k], samples.pdf[k]);
+            let weights = &samples.weight[k * channels..(k + 1) * channels];
+            let heaviest = weight.largest.0;
+            let mut balance = 1.0;
+            if lobe.is_discrete() {
+                self.add_discrete(setup, wi, lobe, pdf, weights);
+                previous = None;
+            } else {
+                let leaf = leaves[k] as usize;
+                self.counts[leaf] += 1;
+                if pdf_of_leaf[leaf] == 0.0 {
+                    let there = density_near(meter, setup, wi)?;
+                    self.zero_pdf.look(if there > 0.0 { 0.0 } else { 1.0 }, || {
+                        Place::pair(setup.wo, wi)
+                            .drawn_by(&u[k * meter.dimensions()..][..meter.dimensions()])
+                            .value("pdf", 0.0)
+                            .value("sample.pdf", pdf)
+                    });
+                }
+                balance = pdf / (pdf + cosine_density(setup, wi));
+                let cell = serial_cell[leaf];
+                previous = match previous {
+                    Some(before) => {
+                        self.serial[usize::from(before) * SERIAL + usize::from(cell)] += 1;
+                        None
+                    }
+                    None => Some(cell),
+                };
+            }
+            for (c, w) in weights.iter().enumerate() {
+                weight.add(c, *w);
+                mis.add(c, w * balance);
+            }
+            let top = weight.largest.0;
+            if top > heaviest && top > self.weight.largest.0 {
+                let place = Place::pair(setup.wo, wi).drawn_by(&u[k * meter.dimensions()..][..meter.dimensions()]);
+                self.heaviest = Some(place.value("weight", top).value("sample.pdf", pdf));
+            }
+        }
+        self.weight.append(&weight);
+        self.mis_sampler.append(&mis);
+
+        if setup.mis {
+            lights.clear();
+            lights.extend((0..BLOCK / PER_LIGHT).map(|_| {
+                cosine_direction(setup, [stream.next_f64(), stream.next_f64(), stream.next_f64()])
+            }));
+            meter.eval(setup.wo, lights, setup.transport, value)?;
+            meter.pdf(setup.wo, lights, setup.transport, density)?;
+            let mut mis = Sums::new(channels);
+            mis.count = lights.len() as u64;
+            for (k, wi) in lights.iter().enumerate() {
+                let total = density[k] + cosine_density(setup, *wi);
+                for c in 0..channels {
+                    mis.add(c, value[k * channels + c] * wi.abs_cos_theta() / total);
+                }
+            }
+            self.mis_cosine.append(&mis);
+        }
+        self.samples += BLOCK;
+        Ok(())
+    }
+
+    fn add_discrete(&mut self, setup: &Setup, wi: Direction, lobe: Lobe, probability: f64, weights: &[f64]) {
+        // Directions of one lobe differ by rounding only.
+        let (near, tolerance) = match setup.precision {
+            Precision::F64 => (1e-9, 1e-9),
+            Precision::F32 => (1e-4, 1e-4),
+        };
+        let known = self.discrete.iter_mut().find(|d| {
+            let difference = d.wi - wi;
+            difference.dot(difference) < near * near && d.lobe == lobe
+        });
+        match known {
+            Some(d) => {
+                d.count += 1;
+                let mut error = super::tally::relative_error(d.probability, probability, 1e-12);
+                for (a, b) in d.weight.iter().zip(weights) {
+                    error = error.max(super::tally::relative_error(*a, *b, 1e-12));
+                }
+                d.spread.look(error, || {
+                    Place::pair(setup.wo, wi).value("probability", probability).value("first", d.probability)
+                });
+            }
+            None if self.discrete.len() < MOST_DISCRETE => self.discrete.push(DiscreteLobe {
+                wi,
+                lobe,
+                probability,
+                weight: weights.to_vec(),
+                count: 1,
+                spread: Tally::new(tolerance),
+            }),
+            None => self.discrete_overflow += 1,
+        }
+    }
+}
+
+/// For each leaf one of [`SERIAL`] coarse cells: its ancestor at depth 4 below
+/// its hemisphere, so that cells have near-equal mass.
+fn serial_cells(partition: &Partition) -> Vec<u8> {
+    let mut cell_of_node = vec![0u32; partition.nodes()];
+    let mut depth_of_node = vec![0u32; partition.nodes()];
+    for node in 0..partition.nodes() {
+        if let Some(children) = partition.children(node) {
+            for (k, child) in children.into_iter().enumerate() {
+                depth_of_node[child] = depth_of_node[node] + 1;
+                let split = depth_of_node[child] > 1 && depth_of_node[child] <= 5;
+                cell_of_node[child] = if split { 2 * cell_of_node[node] + k as u32 } else { cell_of_node[node] };
+            }
+        }
+    }
+    (0..partition.len()).map(|leaf| (cell_of_node[partition.leaf_node(leaf)] as usize % SERIAL) as u8).collect()
+}
+
+/// The largest pdf at `wi` and within rounding of it, so that a sample on the
+/// rim of the support is not taken for one outside of it.
+pub fn density_near(meter: &Meter, setup: &Setup, wi: Direction) -> Result<f64, Halt> {
+    let step = match setup.precision {
+        Precision::F64 => 4.0 * f64::EPSILON,
+        Precision::F32 => 4.0 * f64::from(f32::EPSILON),
+    };
+    let mut around = vec![wi];
+    for (dx, dy, dz) in [(1.0, 0.0, 0.0), (0.0, 1.0, 0.0), (0.0, 0.0, 1.0)] {
+        let d = Direction::new(dx, dy, dz) * step;
+        around.extend([(wi + d).normalized(), (wi - d).normalized()]);
+    }
+    let mut density = Vec::new();
+    meter.pdf(setup.wo, &around, setup.transport, &mut density)?;
+    Ok(density.into_iter().fold(0.0, f64::max))
+}

@@ -1,0 +1,309 @@
+//! All evidence of one case, and how it is gathered.
+
+use super::draws::Draws;
+use super::exact::{Repeats, corners, rotations};
+use super::integrals::Integrals;
+use super::jacobian::Jacobian;
+use super::meter::{Evaluations, Halt, Meter, Sanity, Watch};
+use super::pairs::Pairs;
+use super::samples::{Pilot, SampleIdentities};
+use super::setup::Setup;
+use super::tally::Tally;
+use super::variations::{Comparison, Variant, Variation, two_sided};
+use crate::bsdf::{Claims, Cosine, Description, Direction, RandomNumbers, Subject, Transport};
+use crate::sphere::{Chart, Partition, Point};
+use serde::{Deserialize, Serialize};
+use std::sync::Arc;
+
+/// Leaves of a partition.
+const LEAVES: usize = 1024;
+
+/// The cubature stops at this many directions: eight times what the
+/// narrowest built-in lobe takes.
+const MOST_EVALUATIONS: u64 = 600_000;
+
+/// What checks ask for. The union is measured once per case.
+#[derive(Clone, Copy, Debug, PartialEq, Eq, PartialOrd, Ord, Hash)]
+pub enum Measurement {
+    /// All functions at hostile inputs.
+    Corners,
+    /// The pilot's samples and their identities.
+    Samples,
+    /// Exchanged directions.
+    Pairs,
+    /// Repeated calls.
+    Repeats,
+    /// Directions turned about the normal.
+    Rotations,
+    /// Derivatives of the sampler.
+    Jacobian,
+    /// Changed parameters, and the other side.
+    Variations,
+    /// Integrals over the cells.
+    Integrals,
+    /// Draws counted in the cells.
+    Draws,
+    /// Multiple importance sampling along with the draws.
+    Mis,
+    /// Another subject.
+    Reference,
+}
+
+/// Everything that was measured of one case. A part that is `None` was not
+/// asked for, cannot be had of this subject, or was not reached before `halt`.
+#[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
+pub struct Evidence {
+    /// How the subject is written.
+    pub subject: String,
+    /// What it says of itself, with the claims in force.
+    pub description: Description,
+    /// The given direction.
+    pub wo: Direction,
+    /// The mode of transport.
+    pub transport: Transport,
+    /// The cosine convention that its values follow, where the probe found
+    /// another one than declared.
+    pub cosine_found: Option<Cosine>,
+    /// What was found of every number that came back.
+    pub sanity: Sanity,
+    /// Identities of samples.
+    pub samples: Option<SampleIdentities>,
+    /// Exchanged directions.
+    pub pairs: Option<Pairs>,
+    /// Repeated calls.
+    pub repeats: Option<Repeats>,
+    /// Rotations about the normal.
+    pub rotations: Option<Tally>,
+    /// Derivatives of the sampler.
+    pub jacobian: Option<Jacobian>,
+    /// Changed parameters.
+    pub variations: Option<Vec<Variation>>,
+    /// Front and back of a two-sided subject.
+    pub two_sided: Option<Tally>,
+    /// The cells.
+    pub partition: Option<Partition>,
+    /// Integrals over the cells.
+    pub integrals: Option<Integrals>,
+    /// Draws by attempt: the first look, and its confirmation if one was asked for.
+    pub draws: Vec<Draws>,
+    /// The other subject.
+    pub reference: Option<Comparison>,
+    /// Directions evaluated.
+    pub evaluations: Evaluations,
+    /// Why the measurement ended early.
+    #[serde(skip)]
+    pub halt: Option<Halt>,
+}
+
+/// What a case measures besides its subject.
+#[derive(Clone, Default)]
+pub struct Company {
+    /// The same model with other parameters.
+    pub variants: Vec<Variant>,
+    /// Another subject to compare with, and how it is written.
+    pub reference: Option<(String, Arc<dyn Subject>)>,
+}
+
+/// Gathers the evidence of one case; keeps what later looks need.
+pub struct Gatherer<'a> {
+    meter: Meter<'a>,
+    setup: Setup,
+    watch: Arc<Watch>,
+    pilot: Pilot,
+    evidence: Evidence,
+}
+
+impl<'a> Gatherer<'a> {
+    /// Nothing measured yet.
+    pub fn new(meter: Meter<'a>, setup: Setup, watch: Arc<Watch>, subject: &str) -> Self {
+        let evidence = Evidence {
+            subject: subject.to_string(),
+            description: meter.description.clone(),
+            wo: setup.wo,
+            transport: setup.transport,
+            cosine_found: None,
+            sanity: Sanity::default(),
+            samples: None,
+            pairs: None,
+            repeats: None,
+            rotations: None,
+            jacobian: None,
+            variations: None,
+            two_sided: None,
+            partition: None,
+            integrals: None,
+            draws: Vec::new(),
+            reference: None,
+            evaluations: Evaluations::default(),
+            halt: None,
+        };
+        Self { meter, setup, watch, pilot: Pilot::default(), evidence }
+    }
+
+    /// The evidence so far.
+    pub fn evidence(&self) -> &Evidence {
+        &self.evidence
+    }
+
+    /// The evidence, at the end.
+    pub fn into_evidence(self) -> Evidence {
+        self.evidence
+    }
+
+    /// Measures all that is asked for except the draws. Where the subject
+    /// fails, what was measured before stays.
+    pub fn prepare(&mut self, asked: &[Measurement], company: &Company, draws: u64) {
+        if let Err(halt) = self.try_prepare(asked, company, draws) {
+            self.evidence.halt = Some(halt);
+        }
+        self.account();
+    }
+
+    /// Draws on to `samples` in this attempt (0 the first, 1 the confirmation).
+    pub fn draw(&mut self, attempt: usize, samples: u64) {
+        if self.evidence.halt.is_none()
+            && let Err(halt) = self.try_draw(attempt, samples)
+        {
+            self.evidence.halt = Some(halt);
+        }
+        self.account();
+    }
+
+    fn account(&mut self) {
+        self.evidence.sanity = self.meter.sanity();
+        self.evidence.evaluations = self.meter.evaluations();
+    }
+
+    fn try_prepare(&mut self, asked: &[Measurement], company: &Company, draws: u64) -> Result<(), Halt> {
+        let wants = |m: Measurement| asked.contains(&m);
+        let (meter, setup) = (&self.meter, &self.setup);
+        let has = meter.description.has;
+        if has.sample {
+            let (identities, pilot) = SampleIdentities::gather(meter, setup)?;
+            self.pilot = pilot;
+            self.evidence.samples = Some(identities);
+        }
+        if has.eval && wants(Measurement::Pairs) {
+            self.evidence.pairs = Some(Pairs::gather(meter, setup, &self.pilot)?);
+        }
+        self.settle_cosine();
+        let (meter, setup, pilot) = (&self.meter, &self.setup, &self.pilot);
+        if wants(Measurement::Corners) {
+            corners(meter, setup)?;
+        }
+        if wants(Measurement::Repeats) {
+            self.evidence.repeats = Some(Repeats::gather(meter, setup, pilot)?);
+        }
+        if wants(Measurement::Rotations) {
+            self.evidence.rotations = Some(rotations(meter, setup, pilot)?);
+        }
+        if wants(Measurement::Jacobian) && has.sample && has.pdf {
+            self.evidence.jacobian = Some(Jacobian::gather(meter, setup)?);
+        }
+        if wants(Measurement::Variations) {
+            let variants = &company.variants;
+            self.evidence.variations =
+                Some(Variation::gather(meter, setup, pilot, &self.watch, variants)?);
+            if setup.claims.two_sided {
+                self.evidence.two_sided = Some(two_sided(meter, setup, pilot)?);
+            }
+        }
+        if wants(Measurement::Integrals) || wants(Measurement::Draws) {
+            self.integrate(draws)?;
+        }
+        if let (true, Some((name, other))) = (wants(Measurement::Reference), &company.reference) {
+            self.compare(name, &**other, draws)?;
+        }
+        Ok(())
+    }
+
+    /// The probe of the cosine convention: where weights follow the other
+    /// convention at every sample, and reciprocity, as far as it is claimed,
+    /// holds under the other one and not under the declared one, the values are
+    /// taken as they are meant.
+    fn settle_cosine(&mut self) {
+        let (Some(samples), Some(pairs)) = (&mut self.evidence.samples, &mut self.evidence.pairs) else {
+            return;
+        };
+        let reciprocal_other = pairs.reciprocity.is_broken() && !pairs.reciprocity_other.is_broken();
+        if samples.suggests_other_cosine() && self.setup.claims.reciprocal && reciprocal_other {
+            let found = match self.meter.cosine.get() {
+                Cosine::Excluded => Cosine::Included,
+                Cosine::Included => Cosine::Excluded,
+            };
+            self.meter.cosine.set(found);
+            std::mem::swap(&mut samples.weight, &mut samples.weight_other);
+            std::mem::swap(&mut pairs.reciprocity, &mut pairs.reciprocity_other);
+            self.evidence.cosine_found = Some(found);
+        }
+    }
+
+    fn integrate(&mut self, draws: u64) -> Result<(), Halt> {
+        let chart = Chart::new(self.setup.wo.phi());
+        let pilot = self.pilot_points(&chart);
+        let mut partition = Partition::build(chart, pilot.clone(), LEAVES);
+        let gather = |partition: &Partition| {
+            Integrals::gather(&self.meter, &self.setup, partition, &pilot, draws, MOST_EVALUATIONS)
+        };
+        let mut integrals = gather(&partition)?;
+        let heavy = integrals.heavy_leaves(&partition, &pilot);
+        if !pilot.is_empty() && heavy.iter().any(|h| *h) {
+            partition = partition.refined(&heavy);
+            integrals = gather(&partition)?;
+        }
+        self.evidence.partition = Some(partition);
+        self.evidence.integrals = Some(integrals);
+        Ok(())
+    }
+
+    fn pilot_points(&self, chart: &Chart) -> Vec<Point> {
+        self.pilot.wi.iter().map(|wi| chart.to_point(*wi)).collect()
+    }
+
+    fn compare(&mut self, name: &str, other: &dyn Subject, draws: u64) -> Result<(), Halt> {
+        let description = Meter::describe(other)?;
+        let claims: Claims = description.claims;
+        let other = Meter::new(other, description, self.watch.clone());
+        let masses = match &self.evidence.partition {
+            Some(partition) if other.description.has.pdf => {
+                let pilot = self.pilot_points(partition.chart());
+                let setup = Setup { claims, ..self.setup.clone() };
+                Integrals::gather(&other, &setup, partition, &pilot, draws, MOST_EVALUATIONS)?.pdf
+            }
+            _ => Vec::new(),
+        };
+        let comparison = Comparison::gather(&self.meter, &self.setup, &self.pilot, &other, name, masses)?;
+        self.evidence.reference = Some(comparison);
+        Ok(())
+    }
+
+    fn try_draw(&mut self, attempt: usize, samples: u64) -> Result<(), Halt> {
+        let (Some(partition), Some(integrals)) = (&self.evidence.partition, &self.evidence.integrals) else {
+            return Ok(());
+        };
+        if !self.meter.description.has.sample {
+            return Ok(());
+        }
+        while self.evidence.draws.len() <= attempt {
+            let next = self.evidence.draws.len() as u32;
+            self.evidence.draws.push(Draws::new(next, partition.len(), self.meter.channels()));
+        }
+        let draws = &mut self.evidence.draws[attempt];
+        draws.extend(&self.meter, &self.setup, partition, &integrals.pdf, samples)
+    }
+}
+
+impl Evidence {
+    /// Whether nothing suggests that the subject does anything: no valid
+    /// sample, and no pdf anywhere.
+    pub fn looks_unimplemented(&self) -> bool {
+        let no_sample = self.samples.as_ref().is_some_and(|s| s.valid == 0);
+        let no_density = self.integrals.as_ref().is_none_or(|i| i.mass().0 == 0.0);
+        no_sample && no_density && self.description.has.sample
+    }
+
+    /// Whether its random numbers are its own, so that u says nothing.
+    pub fn owns_random_numbers(&self) -> bool {
+        self.description.claims.rng == RandomNumbers::Internal
+    }
+}

@@ -1,0 +1,222 @@
+//! The density of a smooth sampler from its derivative.
+
+use super::meter::{Halt, Meter};
+use super::setup::Setup;
+use super::tally::{Place, Tally, relative_error};
+use crate::bsdf::{Direction, RandomNumbers, Samples};
+use serde::{Deserialize, Serialize};
+
+/// Points at which the derivative is taken.
+const POINTS: usize = 128;
+
+/// Fewer usable points than this decide nothing.
+const FEWEST: usize = 16;
+
+/// Step of the central differences. Truncation ~h² and rounding ~ε/h are both
+/// about 1e-10 relative here; Richardson's difference of steps h and 2h tells
+/// where a point is worse.
+const STEP: f64 = 1e-5;
+
+/// Points whose derivatives at h and 2h differ by more are not used.
+const ROUGH: f64 = 1e-4;
+
+/// Tolerance on 1/|∂ω/∂u| = pdf: ten times the roughness that is let in.
+const TOLERANCE: f64 = 1e-3;
+
+/// Scans for jumps: lines along each dimension, points on each, halvings of
+/// the widest steps.
+const LINES: usize = 6;
+const LINE_POINTS: usize = 128;
+const HALVINGS: usize = 24;
+
+/// Values of the unused random numbers at which a branch is looked for.
+const BRANCHES: usize = 64;
+
+/// What the derivative of u → wi says of the density.
+#[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
+pub enum Jacobian {
+    /// It says nothing, for this reason.
+    Skipped(String),
+    /// 1/|∂ω/∂u| against pdf.
+    Measured {
+        /// Errors: of equality if `one_to_one`, of pdf ≥ branch/|∂ω/∂u| if not.
+        tally: Tally,
+        /// Whether the map is continuous and keeps its orientation wherever it
+        /// was scanned, and is therefore taken as one to one.
+        one_to_one: bool,
+    },
+}
+
+struct Point {
+    u: Vec<f64>,
+    wi: Direction,
+    pdf: f64,
+    /// ∂ω/∂u_j, by dimension.
+    slopes: Vec<Direction>,
+}
+
+impl Jacobian {
+    /// Differentiates the sampler at random points.
+    pub fn gather(meter: &Meter, setup: &Setup) -> Result<Self, Halt> {
+        if meter.description.claims.rng == RandomNumbers::Internal {
+            return Ok(Self::Skipped("the subject draws its own random numbers".into()));
+        }
+        if meter.coarse_u() {
+            return Ok(Self::Skipped("f32 leaves no digits for differences of u".into()));
+        }
+        let points = slopes(meter, setup)?;
+        if points.len() < FEWEST {
+            return Ok(Self::Skipped(format!(
+                "u → wi is smooth at {} of {POINTS} points only",
+                points.len()
+            )));
+        }
+        let d = meter.dimensions();
+        let active: Vec<usize> =
+            (0..d).filter(|j| points.iter().any(|p| p.slopes[*j].length() > 1e-9)).collect();
+        let &[i, j] = &active[..] else {
+            return Ok(Self::Skipped(format!("wi moves with {} of {d} random numbers, not 2", active.len())));
+        };
+        let oriented: Vec<f64> = points.iter().map(|p| p.slopes[i].cross(p.slopes[j]).dot(p.wi)).collect();
+        let same_turn = oriented.iter().all(|o| *o > 0.0) || oriented.iter().all(|o| *o < 0.0);
+        let shares =
+            points.iter().map(|p| branch(meter, setup, p, [i, j])).collect::<Result<Vec<_>, _>>()?;
+        let one_branch = shares.iter().all(|(share, _)| *share == 1.0);
+        let one_to_one = same_turn && one_branch && !has_jump(meter, setup, [i, j])?;
+        let mut tally = Tally::new(TOLERANCE);
+        for ((point, oriented), (share, slack)) in points.iter().zip(oriented).zip(shares) {
+            let density = share / oriented.abs();
+            let least = (share - slack).max(0.0) / oriented.abs();
+            let error = if one_to_one {
+                relative_error(density, point.pdf, setup.floor())
+            } else if point.pdf >= least {
+                0.0
+            } else {
+                relative_error(least, point.pdf, setup.floor())
+            };
+            tally.look(error, || {
+                Place::pair(setup.wo, point.wi)
+                    .drawn_by(&point.u)
+                    .value("pdf", point.pdf)
+                    .value("1/|∂ω/∂u|", density)
+            });
+        }
+        Ok(Self::Measured { tally, one_to_one })
+    }
+}
+
+/// Points with their derivatives, where these are well defined.
+fn slopes(meter: &Meter, setup: &Setup) -> Result<Vec<Point>, Halt> {
+    let d = meter.dimensions();
+    let mut stream = setup.key.clone().with("stage", "jacobian").block(0);
+    let offsets = [-2.0 * STEP, -STEP, STEP, 2.0 * STEP];
+    let (mut u, mut samples, mut density) = (Vec::new(), Samples::default(), Vec::new());
+    for _ in 0..POINTS {
+        // Away from the rim by more than the widest difference.
+        let centre: Vec<f64> = (0..d).map(|_| 0.01 + 0.98 * stream.next_f64()).collect();
+        u.extend_from_slice(&centre);
+        for j in 0..d {
+            for offset in offsets {
+                let mut row = centre.clone();
+                row[j] += offset;
+                u.extend(row);
+            }
+        }
+    }
+    meter.sample(setup.wo, &u, setup.transport, &mut samples)?;
+    let centres: Vec<Direction> = samples.wi.iter().step_by(1 + 4 * d).copied().collect();
+    meter.pdf(setup.wo, &centres, setup.transport, &mut density)?;
+    let mut points = Vec::new();
+    for k in 0..POINTS {
+        let first = k * (1 + 4 * d);
+        let usable = (first..first + 1 + 4 * d)
+            .all(|r| samples.lobe[r].is_continuous() && samples.lobe[r] == samples.lobe[first]);
+        if !usable {
+            continue;
+        }
+        let mut rough = 0.0f64;
+        let slopes: Vec<Direction> = (0..d)
+            .map(|j| {
+                let at = |o: usize| samples.wi[first + 1 + 4 * j + o];
+                let near = (at(2) - at(1)) * (0.5 / STEP);
+                let far = (at(3) - at(0)) * (0.25 / STEP);
+                rough = rough.max((near - far).length() / near.length().max(1e-6));
+                // Richardson: the errors of second order cancel.
+                near * (4.0 / 3.0) - far * (1.0 / 3.0)
+            })
+            .collect();
+        if rough < ROUGH {
+            let row = &u[first * d..(first + 1) * d];
+            points.push(Point { u: row.to_vec(), wi: samples.wi[first], pdf: density[k], slopes });
+        }
+    }
+    Ok(points)
+}
+
+/// Whether wi jumps anywhere on lines through the unit square: a step that
+/// does not shrink when it is halved again and again.
+fn has_jump(meter: &Meter, setup: &Setup, active: [usize; 2]) -> Result<bool, Halt> {
+    let mut stream = setup.key.clone().with("stage", "jumps").block(0);
+    let mut samples = Samples::default();
+    for axis in active {
+        for _ in 0..LINES {
+            let line: Vec<f64> = (0..meter.dimensions()).map(|_| 0.01 + 0.98 * stream.next_f64()).collect();
+            let row = |s: f64| {
+                let mut row = line.clone();
+                row[axis] = s;
+                row
+            };
+            let places: Vec<f64> =
+                (0..LINE_POINTS).map(|k| (k as f64 + 0.5) / LINE_POINTS as f64).collect();
+            let u: Vec<f64> = places.iter().flat_map(|s| row(*s)).collect();
+            meter.sample(setup.wo, &u, setup.transport, &mut samples)?;
+            let widest = (1..LINE_POINTS)
+                .filter(|k| samples.lobe[*k].is_valid() && samples.lobe[k - 1].is_valid())
+                .map(|k| ((samples.wi[k] - samples.wi[k - 1]).length(), k))
+                .max_by(|a, b| a.0.total_cmp(&b.0));
+            let Some((start, k)) = widest else { continue };
+            let (mut lo, mut hi) = (places[k - 1], places[k]);
+            let mut step = start;
+            for _ in 0..HALVINGS {
+                let middle = 0.5 * (lo + hi);
+                let u: Vec<f64> = [lo, middle, hi].iter().flat_map(|s| row(*s)).collect();
+                meter.sample(setup.wo, &u, setup.transport, &mut samples)?;
+                if !samples.lobe.iter().all(|l| l.is_valid()) {
+                    step = 0.0;
+                    break;
+                }
+                let halves = [1, 2].map(|r| (samples.wi[r] - samples.wi[r - 1]).length());
+                if halves[0] > halves[1] { hi = middle } else { lo = middle }
+                step = halves[0].max(halves[1]);
+            }
+            // 24 halvings shrink a smooth step by 6e-8, a square root's by 2e-4.
+            if step > 0.01 * start {
+                return Ok(true);
+            }
+        }
+    }
+    Ok(false)
+}
+
+/// The share of the other random numbers that lead to the same wi, and the
+/// uncertainty of that share.
+fn branch(meter: &Meter, setup: &Setup, point: &Point, active: [usize; 2]) -> Result<(f64, f64), Halt> {
+    let d = meter.dimensions();
+    if d == 2 {
+        return Ok((1.0, 0.0));
+    }
+    let mut u = Vec::with_capacity(BRANCHES * d);
+    for k in 0..BRANCHES {
+        for j in 0..d {
+            let free = (k as f64 + 0.5) / BRANCHES as f64;
+            u.push(if active.contains(&j) { point.u[j] } else { free });
+        }
+    }
+    let mut samples = Samples::default();
+    meter.sample(setup.wo, &u, setup.transport, &mut samples)?;
+    let same = (0..BRANCHES)
+        .filter(|k| samples.lobe[*k].is_valid() && (samples.wi[*k] - point.wi).length() < 1e-9)
+        .count();
+    let slack = if same == BRANCHES { 0.0 } else { 1.5 / BRANCHES as f64 };
+    Ok((same as f64 / BRANCHES as f64, slack))
+}

@@ -1,0 +1,29 @@
+//! What is measured of one case: counts, integrals, pointwise identities.
+//! Gathered once, judged by every check, saved, and drawn.
+
+mod draws;
+mod exact;
+mod figure;
+mod gathered;
+mod integrals;
+mod jacobian;
+mod meter;
+mod pairs;
+mod probes;
+mod samples;
+mod setup;
+mod tally;
+mod variations;
+
+pub use draws::{BLOCK, DiscreteLobe, Draws, SERIAL, Sums};
+pub use exact::Repeats;
+pub use figure::Figure;
+pub use gathered::{Company, Evidence, Gatherer, Measurement};
+pub use integrals::{Integrals, SMALLEST_PEAK, refracted};
+pub use jacobian::Jacobian;
+pub use meter::{Evaluations, Halt, Meter, Sanity, Watch};
+pub use pairs::Pairs;
+pub use samples::{Pilot, SampleIdentities};
+pub use setup::Setup;
+pub use tally::{Place, Tally, relative_error};
+pub use variations::{Comparison, Limit, Variant, Variation};

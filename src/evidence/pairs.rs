@@ -1,0 +1,216 @@
+//! Identities between eval at a pair of directions and at the exchanged pair.
+
+use super::meter::{Halt, Meter};
+use super::probes;
+use super::samples::Pilot;
+use super::setup::Setup;
+use super::tally::{Place, Tally, relative_error};
+use crate::bsdf::{Cosine, Direction, Samples, Transport, TransportModes};
+use crate::sphere::Chart;
+use serde::{Deserialize, Serialize};
+
+/// Directions spread over the sides, and as many drawn from the lobe.
+const SPREAD: usize = 512;
+
+/// The search for the worst pair: starts, rounds, and the first step in units
+/// of the square's side, halved each round.
+const STARTS: usize = 4;
+const ROUNDS: usize = 16;
+const FIRST_STEP: f64 = 0.03;
+
+/// Draws in which a reversed discrete lobe is looked for.
+const REVERSED: usize = 1024;
+
+/// What exchanging wo and wi does.
+#[derive(Clone, Debug, Default, PartialEq, Serialize, Deserialize)]
+pub struct Pairs {
+    /// eval(wo, wi)/η_o² = eval(wi, wo)/η_i² (inverted in importance mode).
+    pub reciprocity: Tally,
+    /// The same if eval followed the other convention of the cosine.
+    pub reciprocity_other: Tally,
+    /// Between the modes: eval*(wo, wi) = eval(wi, wo), where both are told apart.
+    pub adjoint: Option<Tally>,
+    /// The flux through discrete lobes is the same both ways.
+    pub discrete: Tally,
+    /// Directions with their signed asymmetry (a − b)/max(a, b), for the map.
+    pub map: Vec<(Direction, f64)>,
+}
+
+/// A pair's values as reciprocity compares them.
+struct Exchange {
+    error: f64,
+    error_other: f64,
+    signed: f64,
+    forward: f64,
+    backward: f64,
+}
+
+impl Pairs {
+    /// Tries pairs (wo, wi) of the case's wo.
+    pub fn gather(meter: &Meter, setup: &Setup, pilot: &Pilot) -> Result<Self, Halt> {
+        let mut found = Self {
+            reciprocity: Tally::new(setup.tolerance()),
+            reciprocity_other: Tally::new(setup.tolerance()),
+            discrete: Tally::new(setup.tolerance()),
+            ..Self::default()
+        };
+        let wi = probes::directions(setup, pilot, SPREAD);
+        let exchanges = exchange(meter, setup, &wi)?;
+        let mut order: Vec<usize> = (0..wi.len()).collect();
+        for (wi, e) in wi.iter().zip(&exchanges) {
+            found.look(setup, *wi, e);
+            found.map.push((*wi, e.signed));
+        }
+        order.sort_by(|a, b| exchanges[*b].error.total_cmp(&exchanges[*a].error));
+        let chart = Chart::new(setup.wo.phi());
+        for &start in order.iter().take(STARTS) {
+            found.climb(meter, setup, &chart, wi[start], exchanges[start].error)?;
+        }
+        if meter.description.claims.transport == TransportModes::Both {
+            found.adjoint = Some(adjoint(meter, setup, &wi)?);
+        }
+        for draw in &pilot.discrete {
+            found.reverse(meter, setup, draw.wi, &draw.throughput)?;
+        }
+        Ok(found)
+    }
+
+    fn look(&mut self, setup: &Setup, wi: Direction, e: &Exchange) {
+        self.reciprocity.look(e.error, || {
+            Place::pair(setup.wo, wi)
+                .value("eval(wo, wi)", e.forward)
+                .value("eval(wi, wo)", e.backward)
+                .value("θo", setup.wo.theta().to_degrees())
+                .value("θi", wi.theta().to_degrees())
+        });
+        self.reciprocity_other.look(e.error_other, || Place::pair(setup.wo, wi));
+    }
+
+    /// Walks from `wi` to where the asymmetry is larger.
+    fn climb(
+        &mut self,
+        meter: &Meter,
+        setup: &Setup,
+        chart: &Chart,
+        mut wi: Direction,
+        mut error: f64,
+    ) -> Result<(), Halt> {
+        let mut step = FIRST_STEP;
+        for _ in 0..ROUNDS {
+            let [u, v] = chart.to_point(wi);
+            let side = if u < 1.0 { 0.0 } else { 1.0 };
+            let around: Vec<Direction> = [(step, 0.0), (-step, 0.0), (0.0, step), (0.0, -step)]
+                .into_iter()
+                .map(|(du, dv)| {
+                    let u = (u + du).clamp(side, side + 1.0 - 1e-12);
+                    chart.to_direction([u, (v + dv).clamp(0.0, 1.0)])
+                })
+                .collect();
+            for (there, e) in around.iter().zip(exchange(meter, setup, &around)?) {
+                self.look(setup, *there, &e);
+                if e.error > error {
+                    (wi, error) = (*there, e.error);
+                }
+            }
+            step *= 0.5;
+        }
+        Ok(())
+    }
+
+    /// Looks for the discrete lobe that leads from `wi` back to wo.
+    fn reverse(
+        &mut self,
+        meter: &Meter,
+        setup: &Setup,
+        wi: Direction,
+        throughput: &[f64],
+    ) -> Result<(), Halt> {
+        let mut u = vec![0.0; REVERSED * meter.dimensions()];
+        setup.key.clone().with("stage", "reversed").block(0).fill(meter.coarse_u(), &mut u);
+        let mut samples = Samples::default();
+        meter.sample(wi, &u, setup.transport, &mut samples)?;
+        let back = (0..samples.len())
+            .find(|k| samples.lobe[*k].is_discrete() && (samples.wi[*k] - setup.wo).length() < 1e-4);
+        let (front_o, front_i) = (setup.wo.z > 0.0, wi.z > 0.0);
+        let there = setup.claims.flux_factor(front_o, front_i, setup.transport);
+        let here = setup.claims.flux_factor(front_i, front_o, setup.transport);
+        let mut worst = (0.0, 0.0, 0.0);
+        for (c, t) in throughput.iter().enumerate() {
+            let a = t * there;
+            let b = back.map_or(0.0, |k| samples.weight_of(k)[c] * samples.pdf[k] * here);
+            // A lobe rarer than 1/100 may well be missed in so few draws.
+            let error = if back.is_none() && a < 0.01 { 0.0 } else { relative_error(a, b, 1e-9) };
+            if !(error <= worst.0) {
+                worst = (error, a, b);
+            }
+        }
+        self.discrete.look(worst.0, || {
+            Place::pair(setup.wo, wi).value("flux wi → wo", worst.1).value("flux wo → wi", worst.2)
+        });
+        Ok(())
+    }
+}
+
+/// η² of the side of a direction, as radiance is divided by it; inverted for
+/// importance.
+fn eta_squared(setup: &Setup, w: Direction) -> f64 {
+    match setup.claims.eta {
+        Some(eta) if w.z <= 0.0 => match setup.transport {
+            Transport::Radiance => eta * eta,
+            Transport::Importance => 1.0 / (eta * eta),
+        },
+        _ => 1.0,
+    }
+}
+
+fn exchange(meter: &Meter, setup: &Setup, wi: &[Direction]) -> Result<Vec<Exchange>, Halt> {
+    let channels = meter.channels();
+    let (mut forward, mut backward) = (Vec::new(), Vec::new());
+    meter.eval(setup.wo, wi, setup.transport, &mut forward)?;
+    let mut all = Vec::with_capacity(wi.len());
+    for (k, wi) in wi.iter().enumerate() {
+        meter.eval(*wi, &[setup.wo], setup.transport, &mut backward)?;
+        let mut worst =
+            Exchange { error: 0.0, error_other: 0.0, signed: 0.0, forward: 0.0, backward: 0.0 };
+        for c in 0..channels {
+            let (f, b) = (forward[k * channels + c], backward[c]);
+            let a = f / eta_squared(setup, setup.wo);
+            let z = b / eta_squared(setup, *wi);
+            let error = relative_error(a, z, setup.floor());
+            let (cos_o, cos_i) = (setup.wo.abs_cos_theta(), wi.abs_cos_theta());
+            let other = match meter.cosine.get() {
+                Cosine::Excluded => relative_error(a * cos_o, z * cos_i, setup.floor()),
+                Cosine::Included => relative_error(a * cos_i, z * cos_o, setup.floor()),
+            };
+            worst.error_other = worst.error_other.max(other);
+            if !(error <= worst.error) || c == 0 {
+                let signed = (a - z) / a.max(z).max(setup.floor());
+                worst = Exchange { error, signed, forward: f, backward: b, ..worst };
+            }
+        }
+        all.push(worst);
+    }
+    Ok(all)
+}
+
+/// eval in one mode against the exchanged eval in the other.
+fn adjoint(meter: &Meter, setup: &Setup, wi: &[Direction]) -> Result<Tally, Halt> {
+    let mut tally = Tally::new(setup.tolerance());
+    let other = match setup.transport {
+        Transport::Radiance => Transport::Importance,
+        Transport::Importance => Transport::Radiance,
+    };
+    let channels = meter.channels();
+    let (mut own, mut exchanged) = (Vec::new(), Vec::new());
+    meter.eval(setup.wo, wi, setup.transport, &mut own)?;
+    for (k, wi) in wi.iter().enumerate() {
+        meter.eval(*wi, &[setup.wo], other, &mut exchanged)?;
+        for c in 0..channels {
+            let (a, b) = (own[k * channels + c], exchanged[c]);
+            tally.look(relative_error(a, b, setup.floor()), || {
+                Place::pair(setup.wo, *wi).value("eval(wo, wi)", a).value("eval*(wi, wo)", b)
+            });
+        }
+    }
+    Ok(tally)
+}

@@ -1,0 +1,169 @@
+//! The pilot: the first draws of a case. They shape the partition and carry
+//! the identities that hold for each sample; they are never counted.
+
+use super::draws::{BLOCK, density_near};
+use super::meter::{Halt, Meter};
+use super::setup::Setup;
+use super::tally::{Place, Tally, relative_error};
+use crate::bsdf::{Cosine, Direction, Lobe, Samples};
+use serde::{Deserialize, Serialize};
+
+/// Blocks of pilot draws: 32 points for each of 1024 leaves.
+const BLOCKS: u64 = 8;
+
+/// A discrete draw of the pilot.
+#[derive(Clone, Debug, PartialEq)]
+pub struct DiscreteDraw {
+    /// Its direction.
+    pub wi: Direction,
+    /// Its flags.
+    pub lobe: Lobe,
+    /// Its claimed probability times its weight, by channel.
+    pub throughput: Vec<f64>,
+}
+
+/// The draws of the pilot, as far as others use them.
+#[derive(Clone, Debug, Default)]
+pub struct Pilot {
+    /// Continuous samples.
+    pub wi: Vec<Direction>,
+    /// Discrete samples of different directions.
+    pub discrete: Vec<DiscreteDraw>,
+    /// Draws in all.
+    pub drawn: u64,
+}
+
+/// Identities that hold for each continuous sample.
+#[derive(Clone, Debug, Default, PartialEq, Serialize, Deserialize)]
+pub struct SampleIdentities {
+    /// Draws in all.
+    pub drawn: u64,
+    /// Draws with a sample.
+    pub valid: u64,
+    /// weight·pdf(wo, wi) = f·|cos θi|, under the cosine convention in force.
+    pub weight: Tally,
+    /// The same under the other convention of the cosine.
+    pub weight_other: Tally,
+    /// sample.pdf = pdf(wo, wi).
+    pub returned_pdf: Tally,
+    /// pdf(wo, wi) > 0.
+    pub zero_pdf: Tally,
+    /// The most frequent direction among continuous samples, and its share.
+    pub repeated: Option<(Direction, f64)>,
+}
+
+impl SampleIdentities {
+    /// Draws the pilot and looks at each of its samples.
+    pub fn gather(meter: &Meter, setup: &Setup) -> Result<(Self, Pilot), Halt> {
+        let mut found = Self {
+            weight: Tally::new(setup.tolerance()),
+            weight_other: Tally::new(setup.tolerance()),
+            returned_pdf: Tally::new(setup.tolerance()),
+            zero_pdf: Tally::new(0.0),
+            ..Self::default()
+        };
+        let mut pilot = Pilot::default();
+        let mut samples = Samples::default();
+        let (mut u, mut value, mut density) = (Vec::new(), Vec::new(), Vec::new());
+        let (d, channels) = (meter.dimensions(), meter.channels());
+        let has = meter.description.has;
+        for block in 0..BLOCKS {
+            u.resize(BLOCK as usize * d, 0.0);
+            setup.key.clone().with("stage", "pilot").block(block).fill(meter.coarse_u(), &mut u);
+            meter.sample(setup.wo, &u, setup.transport, &mut samples)?;
+            found.drawn += BLOCK;
+            let rows: Vec<usize> = (0..samples.len()).filter(|k| samples.lobe[*k].is_continuous()).collect();
+            let wi: Vec<Direction> = rows.iter().map(|k| samples.wi[*k]).collect();
+            for k in 0..samples.len() {
+                found.valid += u64::from(samples.lobe[k].is_valid());
+                if samples.lobe[k].is_discrete() {
+                    pilot.add_discrete(samples.wi[k], samples.lobe[k], samples.pdf[k], samples.weight_of(k));
+                }
+            }
+            if has.pdf {
+                meter.pdf(setup.wo, &wi, setup.transport, &mut density)?;
+            }
+            if has.eval {
+                meter.eval(setup.wo, &wi, setup.transport, &mut value)?;
+            }
+            for (row, &k) in rows.iter().enumerate() {
+                let wi = samples.wi[k];
+                let place = || Place::pair(setup.wo, wi).drawn_by(&u[k * d..(k + 1) * d]);
+                if !has.pdf {
+                    continue;
+                }
+                let (p, told) = (density[row], samples.pdf[k]);
+                if p == 0.0 {
+                    let there = density_near(meter, setup, wi)?;
+                    found.zero_pdf.look(if there > 0.0 { 0.0 } else { 1.0 }, || {
+                        place().value("pdf", 0.0).value("sample.pdf", told)
+                    });
+                    continue;
+                }
+                found.zero_pdf.look(0.0, place);
+                found.returned_pdf.look(relative_error(told, p, setup.floor()), || {
+                    place().value("sample.pdf", told).value("pdf", p)
+                });
+                if !has.eval {
+                    continue;
+                }
+                let cosine = wi.abs_cos_theta();
+                let other = match meter.cosine.get() {
+                    Cosine::Excluded => 1.0,
+                    Cosine::Included => cosine * cosine,
+                };
+                let (mut worst, mut worst_other) = ((0.0f64, 0), 0.0f64);
+                for c in 0..channels {
+                    let (w, f) = (samples.weight[k * channels + c], value[row * channels + c]);
+                    let error = relative_error(w * p, f * cosine, setup.floor());
+                    if !(error <= worst.0) {
+                        worst = (error, c);
+                    }
+                    worst_other = worst_other.max(relative_error(w * p, f * other, setup.floor()));
+                }
+                let c = worst.1;
+                found.weight.look(worst.0, || {
+                    let f = value[row * channels + c];
+                    place()
+                        .value("weight", samples.weight[k * channels + c])
+                        .value("pdf", p)
+                        .value("eval", f)
+                        .value("f·|cos θi|/pdf", f * cosine / p)
+                });
+                found.weight_other.look(worst_other, place);
+            }
+            pilot.wi.extend(wi);
+        }
+        pilot.drawn = found.drawn;
+        found.repeated = pilot.most_repeated();
+        Ok((found, pilot))
+    }
+
+    /// Whether eval seems to follow the other convention of the cosine than it
+    /// declares: the declared one is broken nearly everywhere, the other
+    /// nowhere. A weight that lacks the cosine looks the same; reciprocity
+    /// tells them apart.
+    pub fn suggests_other_cosine(&self) -> bool {
+        self.weight.checked > 0 && self.weight.share() > 0.9 && !self.weight_other.is_broken()
+    }
+}
+
+impl Pilot {
+    fn add_discrete(&mut self, wi: Direction, lobe: Lobe, probability: f64, weight: &[f64]) {
+        let near = |d: &DiscreteDraw| (d.wi - wi).length() < 1e-4 && d.lobe == lobe;
+        if self.discrete.len() < 16 && !self.discrete.iter().any(near) {
+            let throughput = weight.iter().map(|w| w * probability).collect();
+            self.discrete.push(DiscreteDraw { wi, lobe, throughput });
+        }
+    }
+
+    /// The direction that comes most often bit for bit, and its share.
+    fn most_repeated(&self) -> Option<(Direction, f64)> {
+        let mut bits: Vec<[u64; 3]> =
+            self.wi.iter().map(|d| [d.x.to_bits(), d.y.to_bits(), d.z.to_bits()]).collect();
+        bits.sort_unstable();
+        let longest = bits.chunk_by(|a, b| a == b).max_by_key(|run| run.len())?;
+        let [x, y, z] = longest[0].map(f64::from_bits);
+        (longest.len() > 1).then(|| (Direction::new(x, y, z), longest.len() as f64 / self.wi.len() as f64))
+    }
+}

@@ -1,0 +1,253 @@
+//! What changes when a parameter changes, at limits, and on the other side.
+
+use super::integrals::expected_directions;
+use super::meter::{Halt, Meter, Watch};
+use super::probes;
+use super::samples::Pilot;
+use super::setup::Setup;
+use super::tally::{Place, Tally, relative_error};
+use crate::bsdf::{Direction, Samples, Subject};
+use crate::evidence::Figure;
+use crate::registry::Role;
+use serde::{Deserialize, Serialize};
+use std::sync::Arc;
+
+/// The same model with one parameter changed.
+#[derive(Clone)]
+pub struct Variant {
+    /// Which parameter.
+    pub parameter: String,
+    /// Its value in the case.
+    pub from: String,
+    /// Its value here.
+    pub to: String,
+    /// At `to`, this limit must be reached.
+    pub limit: Option<Role>,
+    /// The changed subject.
+    pub subject: Arc<dyn Subject>,
+}
+
+/// What a changed parameter did.
+#[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
+pub struct Variation {
+    /// Which parameter.
+    pub parameter: String,
+    /// Its value in the case.
+    pub from: String,
+    /// The other value.
+    pub to: String,
+    /// Largest relative difference of eval, pdf or samples; infinite where
+    /// even the channels differ.
+    pub change: Figure,
+    /// The limit tried, with what was measured there.
+    pub limit: Option<Limit>,
+}
+
+/// What was found at a limit of a parameter.
+#[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
+pub enum Limit {
+    /// Median angle, in radians, between samples and the nearest of mirror and
+    /// refracted directions, at this roughness.
+    Narrow {
+        /// The angle.
+        median: Figure,
+        /// The roughness.
+        roughness: f64,
+    },
+    /// Share of flux that is reflected where the index is 1.
+    Transparent {
+        /// E[weight] over samples on wo's side, largest channel.
+        reflected: Figure,
+    },
+}
+
+const ROWS: usize = 128;
+const LIMIT_DRAWS: usize = 1024;
+
+impl Variation {
+    /// Compares each variant with the subject itself.
+    pub fn gather(
+        meter: &Meter,
+        setup: &Setup,
+        pilot: &Pilot,
+        watch: &Arc<Watch>,
+        variants: &[Variant],
+    ) -> Result<Vec<Self>, Halt> {
+        let wi = probes::directions(setup, pilot, ROWS);
+        let own = Response::of(meter, setup, &wi)?;
+        let mut all = Vec::new();
+        for variant in variants {
+            let description = Meter::describe(&*variant.subject)?;
+            let other = Meter::new(&*variant.subject, description, watch.clone());
+            let change = if other.channels() == meter.channels() && other.dimensions() == meter.dimensions() {
+                own.distance(&Response::of(&other, setup, &wi)?)
+            } else {
+                f64::INFINITY
+            };
+            let limit = variant.limit.map(|role| limit(&other, setup, role, &variant.to)).transpose()?;
+            all.push(Self {
+                parameter: variant.parameter.clone(),
+                from: variant.from.clone(),
+                to: variant.to.clone(),
+                change: change.into(),
+                limit,
+            });
+        }
+        Ok(all)
+    }
+}
+
+/// All that a subject says at some directions and random numbers.
+struct Response {
+    numbers: Vec<f64>,
+}
+
+impl Response {
+    fn of(meter: &Meter, setup: &Setup, wi: &[Direction]) -> Result<Self, Halt> {
+        let mut numbers = Vec::new();
+        let mut part = Vec::new();
+        if meter.description.has.eval {
+            meter.eval(setup.wo, wi, setup.transport, &mut part)?;
+            numbers.extend_from_slice(&part);
+        }
+        if meter.description.has.pdf {
+            meter.pdf(setup.wo, wi, setup.transport, &mut part)?;
+            numbers.extend_from_slice(&part);
+        }
+        if meter.description.has.sample {
+            let samples = draw(meter, setup, setup.wo, ROWS)?;
+            for (k, d) in samples.wi.iter().enumerate() {
+                numbers.extend([d.x, d.y, d.z, samples.pdf[k], f64::from(samples.lobe[k].0)]);
+            }
+            numbers.extend(samples.weight);
+        }
+        Ok(Self { numbers })
+    }
+
+    fn distance(&self, other: &Self) -> f64 {
+        if self.numbers.len() != other.numbers.len() {
+            return f64::INFINITY;
+        }
+        let errors = self.numbers.iter().zip(&other.numbers).map(|(a, b)| relative_error(*a, *b, 1e-12));
+        errors.fold(0.0, f64::max)
+    }
+}
+
+fn draw(meter: &Meter, setup: &Setup, wo: Direction, rows: usize) -> Result<Samples, Halt> {
+    let mut u = vec![0.0; rows * meter.dimensions()];
+    setup.key.clone().with("stage", "variations").block(0).fill(meter.coarse_u(), &mut u);
+    let mut samples = Samples::default();
+    meter.sample(wo, &u, setup.transport, &mut samples)?;
+    Ok(samples)
+}
+
+fn limit(meter: &Meter, setup: &Setup, role: Role, value: &str) -> Result<Limit, Halt> {
+    let samples = draw(meter, setup, setup.wo, LIMIT_DRAWS)?;
+    let rows: Vec<usize> = (0..samples.len()).filter(|k| samples.lobe[*k].is_valid()).collect();
+    match role {
+        Role::Roughness => {
+            let expected = expected_directions(meter, setup)?;
+            // The mirror direction, and the refracted one where there is one.
+            let lobes: Vec<Direction> =
+                expected.iter().enumerate().filter(|(k, _)| *k == 0 || *k > 3).map(|(_, d)| *d).collect();
+            let mut angles: Vec<f64> = rows
+                .iter()
+                .map(|k| lobes.iter().map(|d| d.angle(samples.wi[*k])).fold(f64::INFINITY, f64::min))
+                .collect();
+            angles.sort_by(f64::total_cmp);
+            let median = angles.get(angles.len() / 2).copied().unwrap_or(f64::INFINITY);
+            Ok(Limit::Narrow { median: median.into(), roughness: value.parse().unwrap_or(f64::NAN) })
+        }
+        Role::Eta => {
+            let mut sums = vec![0.0; meter.channels()];
+            for k in rows.into_iter().filter(|k| samples.wi[*k].same_side(setup.wo)) {
+                for (sum, w) in sums.iter_mut().zip(samples.weight_of(k)) {
+                    *sum += w / LIMIT_DRAWS as f64;
+                }
+            }
+            Ok(Limit::Transparent { reflected: sums.into_iter().fold(0.0, f64::max).into() })
+        }
+    }
+}
+
+/// Front and back of a two-sided subject: all values at (wo, wi) equal those at
+/// the flipped pair.
+pub fn two_sided(meter: &Meter, setup: &Setup, pilot: &Pilot) -> Result<Tally, Halt> {
+    let mut tally = Tally::new(setup.tolerance());
+    let wi = probes::directions(setup, pilot, ROWS);
+    let flipped: Vec<Direction> = wi.iter().map(|w| w.flipped()).collect();
+    let (mut a, mut b) = (Vec::new(), Vec::new());
+    if meter.description.has.eval {
+        meter.eval(setup.wo, &wi, setup.transport, &mut a)?;
+        meter.eval(setup.wo.flipped(), &flipped, setup.transport, &mut b)?;
+        compare(&mut tally, setup, &wi, ["eval", "from the other side"], &a, &b);
+    }
+    if meter.description.has.pdf {
+        meter.pdf(setup.wo, &wi, setup.transport, &mut a)?;
+        meter.pdf(setup.wo.flipped(), &flipped, setup.transport, &mut b)?;
+        compare(&mut tally, setup, &wi, ["pdf", "from the other side"], &a, &b);
+    }
+    Ok(tally)
+}
+
+/// A comparison with another subject.
+#[derive(Clone, Debug, Default, PartialEq, Serialize, Deserialize)]
+pub struct Comparison {
+    /// How the other is written.
+    pub name: String,
+    /// eval of both.
+    pub eval: Tally,
+    /// pdf of both.
+    pub pdf: Tally,
+    /// ∫ of the other's pdf by leaf, which the draws must follow.
+    pub masses: Vec<f64>,
+    /// Why the two cannot be compared, if so.
+    pub incomparable: Option<String>,
+}
+
+impl Comparison {
+    /// Compares values at many directions. `masses` are integrated elsewhere.
+    pub fn gather(
+        meter: &Meter,
+        setup: &Setup,
+        pilot: &Pilot,
+        other: &Meter,
+        name: &str,
+        masses: Vec<f64>,
+    ) -> Result<Self, Halt> {
+        let mut found = Self {
+            name: name.into(),
+            eval: Tally::new(setup.tolerance()),
+            pdf: Tally::new(setup.tolerance()),
+            masses,
+            incomparable: None,
+        };
+        if other.channels() != meter.channels() {
+            found.incomparable =
+                Some(format!("{} channels here, {} there", meter.channels(), other.channels()));
+            return Ok(found);
+        }
+        let wi = probes::directions(setup, pilot, 4 * ROWS);
+        let (mut a, mut b) = (Vec::new(), Vec::new());
+        if meter.description.has.eval && other.description.has.eval {
+            meter.eval(setup.wo, &wi, setup.transport, &mut a)?;
+            other.eval(setup.wo, &wi, setup.transport, &mut b)?;
+            compare(&mut found.eval, setup, &wi, ["eval", "reference"], &a, &b);
+        }
+        if meter.description.has.pdf && other.description.has.pdf {
+            meter.pdf(setup.wo, &wi, setup.transport, &mut a)?;
+            other.pdf(setup.wo, &wi, setup.transport, &mut b)?;
+            compare(&mut found.pdf, setup, &wi, ["pdf", "reference"], &a, &b);
+        }
+        Ok(found)
+    }
+}
+
+fn compare(tally: &mut Tally, setup: &Setup, wi: &[Direction], names: [&str; 2], a: &[f64], b: &[f64]) {
+    let width = (a.len() / wi.len().max(1)).max(1);
+    for (k, (a, b)) in a.iter().zip(b).enumerate() {
+        tally.look(relative_error(*a, *b, setup.floor()), || {
+            Place::pair(setup.wo, wi[k / width]).value(names[0], *a).value(names[1], *b)
+        });
+    }
+}

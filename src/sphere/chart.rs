@@ -1,0 +1,161 @@
+//! The equal-area map between directions and a rectangle.
+
+use crate::bsdf::Direction;
+use std::f64::consts::{FRAC_PI_4, PI};
+
+/// A point of the rectangle [0,2]×[0,1]: the front hemisphere is x in [0,1),
+/// the back one x in [1,2].
+pub type Point = [f64; 2];
+
+/// Solid angle of a unit of area of the rectangle, in steradians: each
+/// hemisphere of 2π sr is a unit square.
+pub const STERADIANS: f64 = 2.0 * PI;
+
+/// An equal-area map between the sphere and two unit squares, one a hemisphere.
+///
+/// A hemisphere goes to the unit disc by Lambert's azimuthal projection,
+/// r² = t = 1 − |cos θ|, and the disc to the square by the concentric map
+/// (Shirley and Chiu, "A low distortion map between disk and square", 1997).
+/// Equal area, no singular pole, and no cell of the squares straddles the
+/// horizon. Azimuths are counted from `phi0`, so that the plane of incidence
+/// lies in the middle of a wedge of the concentric map and not on a seam.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub struct Chart {
+    cos: f64,
+    sin: f64,
+}
+
+impl Chart {
+    /// A chart with its x axis at azimuth `phi0` (radians).
+    pub fn new(phi0: f64) -> Self {
+        let (sin, cos) = phi0.sin_cos();
+        Self { cos, sin }
+    }
+
+    /// The azimuth of its x axis in (−π, π].
+    pub fn phi0(&self) -> f64 {
+        self.sin.atan2(self.cos)
+    }
+
+    /// The point of a direction. t = 1 − |z| is computed as (x² + y²)/(1 + |z|),
+    /// which keeps all digits near the pole.
+    #[inline]
+    pub fn to_point(&self, d: Direction) -> Point {
+        let scale = 1.0 / (1.0 + d.z.abs()).sqrt();
+        let x = (self.cos * d.x + self.sin * d.y) * scale;
+        let y = (self.cos * d.y - self.sin * d.x) * scale;
+        let r = (x * x + y * y).sqrt().min(1.0);
+        let along_x = x.abs() >= y.abs();
+        let (major, minor) = if along_x { (x, y) } else { (y, x) };
+        // 0/0 at the pole would be NaN.
+        let ratio = if major == 0.0 { 0.0 } else { minor / major };
+        let a = r.copysign(major);
+        let b = a * (arctangent(ratio) / FRAC_PI_4);
+        let (u, v) = if along_x { (a, b) } else { (b, a) };
+        // The front square is half open: its right edge stays below 1.
+        let u = (0.5 * (u + 1.0)).clamp(0.0, 1.0 - f64::EPSILON);
+        [if d.z > 0.0 { u } else { 1.0 + u }, (0.5 * (v + 1.0)).clamp(0.0, 1.0)]
+    }
+
+    /// The unit direction of a point.
+    #[inline]
+    pub fn to_direction(&self, [u, v]: Point) -> Direction {
+        let (u, side) = if u < 1.0 { (u, 1.0) } else { (u - 1.0, -1.0) };
+        let (a, b) = (2.0 * u - 1.0, 2.0 * v - 1.0);
+        let along_x = a.abs() >= b.abs();
+        let (major, minor) = if along_x { (a, b) } else { (b, a) };
+        let ratio = if major == 0.0 { 0.0 } else { minor / major };
+        let (sin, cos) = (FRAC_PI_4 * ratio).sin_cos();
+        let (x, y) = if along_x { (major * cos, major * sin) } else { (major * sin, major * cos) };
+        // t = major², so z = 1 − t and sin θ = r √(2 − t).
+        let stretch = (2.0 - major * major).sqrt();
+        let (x, y) = (x * stretch, y * stretch);
+        Direction::new(
+            self.cos * x - self.sin * y,
+            self.sin * x + self.cos * y,
+            side * (1.0 - major) * (1.0 + major),
+        )
+    }
+
+    /// Where the disc that pictures show has this direction: x and y in
+    /// [−1, 1], r² = 1 − |cos θ|, x along `phi0`.
+    pub fn to_disc(&self, d: Direction) -> Point {
+        let scale = 1.0 / (1.0 + d.z.abs()).sqrt();
+        [(self.cos * d.x + self.sin * d.y) * scale, (self.cos * d.y - self.sin * d.x) * scale]
+    }
+
+    /// The direction on the front (or back) hemisphere at a place of the disc;
+    /// `None` outside of it.
+    pub fn from_disc(&self, [x, y]: Point, front: bool) -> Option<Direction> {
+        let t = x * x + y * y;
+        if t > 1.0 {
+            return None;
+        }
+        let stretch = (2.0 - t).sqrt();
+        let z = if front { 1.0 - t } else { t - 1.0 };
+        Some(Direction::new(
+            (self.cos * x - self.sin * y) * stretch,
+            (self.sin * x + self.cos * y) * stretch,
+            z,
+        ))
+    }
+}
+
+/// arctan of |s| ≤ 1.
+#[inline]
+fn arctangent(s: f64) -> f64 {
+    s.atan()
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use proptest::prelude::*;
+
+    proptest! {
+        #[test]
+        fn is_its_own_inverse(u in 0.0..2.0f64, v in 0.0..1.0f64, phi0 in -3.0..3.0f64) {
+            let chart = Chart::new(phi0);
+            let d = chart.to_direction([u, v]);
+            prop_assert!((d.length() - 1.0).abs() < 1e-15 * 8.0);
+            let [u2, v2] = chart.to_point(d);
+            prop_assert!((u - u2).abs() < 1e-14 && (v - v2).abs() < 1e-14, "{u} {v} -> {u2} {v2}");
+            let back = chart.from_disc(chart.to_disc(d), d.z > 0.0).unwrap();
+            prop_assert!(back.angle(d) < 1e-14);
+        }
+    }
+
+    /// The area of a small square's image, by finite differences, is 2π times its own.
+    #[test]
+    fn is_equal_area() {
+        let chart = Chart::new(0.4);
+        let h = 1e-4;
+        for i in 0..40 {
+            for j in 0..20 {
+                let (u, v) = (0.0251 + 0.05 * f64::from(i), 0.0253 + 0.05 * f64::from(j));
+                let at = |du: f64, dv: f64| chart.to_direction([u + du * h, v + dv * h]);
+                let area = (at(0.5, 0.0) - at(-0.5, 0.0)).cross(at(0.0, 0.5) - at(0.0, -0.5)).length();
+                assert!((area / (h * h) / STERADIANS - 1.0).abs() < 1e-5, "at {u} {v}: {area}");
+            }
+        }
+    }
+
+    #[test]
+    fn keeps_digits_near_the_pole() {
+        let chart = Chart::new(0.0);
+        let theta = 1e-9;
+        let [u, v] = chart.to_point(Direction::from_angles(theta, 0.3));
+        let r = (2.0 * u - 1.0).abs().max((2.0 * v - 1.0).abs());
+        // r = √(1 − cos θ) = θ/√2 to first order; u and v themselves hold 1e-16.
+        assert!((r - theta / 2f64.sqrt()).abs() < 3e-16);
+    }
+
+    #[test]
+    fn sides_do_not_mix() {
+        let chart = Chart::new(0.0);
+        for d in [Direction::new(1.0, 0.0, 1e-300), Direction::new(0.6, 0.8, 0.0), Direction::NORMAL] {
+            assert_eq!(chart.to_point(d)[0] < 1.0, d.z > 0.0, "{d:?}");
+            assert!(chart.to_point(-d)[0] >= 1.0 || d.z <= 0.0);
+        }
+    }
+}

@@ -1,0 +1,459 @@
+//! Adaptive cubature over the leaves of a partition.
+
+use super::chart::{Point, STERADIANS};
+use super::genz_malik::{NODES, Rule};
+use super::partition::{Cell, Partition};
+use crate::bsdf::Direction;
+
+/// A place where the integrand is known to be at least this large.
+#[derive(Clone, Copy, Debug)]
+pub struct Marker {
+    /// Where.
+    pub at: Point,
+    /// The first component there (the pdf).
+    pub density: f64,
+    /// The sum of the controlled components there (f·|cos θi|).
+    pub value: f64,
+}
+
+/// What is asked of a cubature.
+#[derive(Clone, Copy, Debug)]
+pub struct Goal {
+    /// Components of the integrand: the pdf, then `controlled` values, then
+    /// others that are integrated along without steering the refinement.
+    pub components: usize,
+    /// How many components after the first steer the refinement.
+    pub controlled: usize,
+    /// Number of draws N that the cells' masses p with errors e will be compared with:
+    /// Σ N e²/p ≤ 0.1 keeps the size of a χ² test within 8 % of nominal at 10⁻⁹.
+    pub draws: u64,
+    /// Largest error of the total mass, relative to it.
+    pub mass: f64,
+    /// Largest error of the controlled totals, relative to them.
+    pub value: f64,
+    /// Stop at this many evaluations of the integrand.
+    pub evaluations: u64,
+}
+
+/// N Σ e²/p that cells may have, see [`Goal::draws`].
+const NONCENTRALITY: f64 = 0.1;
+
+/// A cell is halved until its pilot points span this share of it on both
+/// axes: then no lobe that the pilot has seen is narrower than the rule sees.
+const FILL: f64 = 1.0 / 3.0;
+
+/// Fewer pilot points than this say nothing of a lobe's width.
+const TELLING: usize = 8;
+
+/// Cells are halved at most so often; 2⁻⁵⁰ of a square is far below the
+/// narrowest lobe that f64 holds.
+const DEEPEST: u32 = 100;
+
+/// Splits that a disagreement between pilot counts and mass may cause in a
+/// row: each is only a suspicion, and a wrong sampler would go on for ever.
+const SUSPICION: u32 = 6;
+
+/// Integrals of each component over each leaf.
+#[derive(Clone, Debug)]
+pub struct LeafIntegrals {
+    /// Number of components.
+    pub components: usize,
+    /// `values[leaf * components + c]`.
+    pub values: Vec<f64>,
+    /// Estimates of the absolute errors, likewise.
+    pub errors: Vec<f64>,
+    /// The largest value met at any node, per component.
+    pub largest: Vec<f64>,
+    /// Directions that were evaluated.
+    pub evaluations: u64,
+    /// Whether the goals were reached.
+    pub converged: bool,
+    /// The cells that the rule was applied to, within which the integrand is
+    /// smooth as far as it could tell.
+    pub patches: Vec<Cell>,
+}
+
+impl LeafIntegrals {
+    /// The total of a component and its error estimate.
+    pub fn total(&self, component: usize) -> (f64, f64) {
+        let sum = |v: &[f64]| v.iter().skip(component).step_by(self.components).sum();
+        (sum(&self.values), sum(&self.errors))
+    }
+}
+
+/// One cell of the cubature.
+struct Patch {
+    leaf: u32,
+    cell: Cell,
+    depth: u32,
+    suspicion: u32,
+    axis: u8,
+    pilot: Vec<Point>,
+    markers: Vec<Marker>,
+    /// Largest pdf, and largest sum of controlled values, at its nodes.
+    seen: [f64; 2],
+}
+
+/// Integrates `f` over each leaf of `partition`: Genz and Malik's rule of
+/// degree 7 with its embedded degree 5, halving patches where the rules
+/// differ, where pilot points or markers say that the rule may have missed a
+/// lobe, and where the pilot's counts disagree with the mass.
+///
+/// An error-driven rule alone would report zero with certainty where all its
+/// nodes miss a narrow lobe; the estimates of error are not bounds, and pilot
+/// and markers are what makes them trustworthy. A wrong pilot only costs
+/// evaluations.
+///
+/// `f` gets directions and fills a row of `components` values for each.
+pub fn integrate<E>(
+    partition: &Partition,
+    pilot: &[Point],
+    markers: &[Marker],
+    goal: &Goal,
+    mut f: impl FnMut(&[Direction], &mut [f64]) -> Result<(), E>,
+) -> Result<LeafIntegrals, E> {
+    let mut todo = first_patches(partition, pilot, markers);
+    let mut done: Vec<Patch> = Vec::new();
+    // Values and errors of `done`, `components` each.
+    let (mut values, mut errors): (Vec<f64>, Vec<f64>) = Default::default();
+    let mut largest = vec![0.0; goal.components];
+    let mut evaluations = 0;
+    let pilot_size = pilot.len() as f64;
+    loop {
+        evaluations += (todo.len() * NODES) as u64;
+        evaluate(partition, &mut todo, goal, &mut f, &mut values, &mut errors, &mut largest)?;
+        done.append(&mut todo);
+        let split = to_split(&done, &values, &errors, partition.len(), goal, pilot_size);
+        let converged = !split.iter().any(|s| *s);
+        if converged || evaluations >= goal.evaluations {
+            let mut result = LeafIntegrals {
+                components: goal.components,
+                values: vec![0.0; partition.len() * goal.components],
+                errors: vec![0.0; partition.len() * goal.components],
+                largest,
+                evaluations,
+                converged,
+                patches: done.iter().map(|patch| patch.cell).collect(),
+            };
+            for (k, patch) in done.iter().enumerate() {
+                let (from, to) = (k * goal.components, patch.leaf as usize * goal.components);
+                for c in 0..goal.components {
+                    result.values[to + c] += values[from + c];
+                    result.errors[to + c] += errors[from + c];
+                }
+            }
+            return Ok(result);
+        }
+        // Patches that stay move forward; the others are halved.
+        let mut kept = 0;
+        let mut stay = Vec::with_capacity(done.len());
+        for (k, patch) in done.drain(..).enumerate() {
+            if split[k] {
+                todo.extend(halve(patch));
+                continue;
+            }
+            let (from, to) = (k * goal.components, kept * goal.components);
+            values.copy_within(from..from + goal.components, to);
+            errors.copy_within(from..from + goal.components, to);
+            kept += 1;
+            stay.push(patch);
+        }
+        done = stay;
+        values.truncate(kept * goal.components);
+        errors.truncate(kept * goal.components);
+    }
+}
+
+/// The leaves, graded towards their pilot points.
+fn first_patches(partition: &Partition, pilot: &[Point], markers: &[Marker]) -> Vec<Patch> {
+    let mut of_leaf: Vec<Patch> = (0..partition.len())
+        .map(|leaf| Patch {
+            leaf: leaf as u32,
+            cell: partition.leaf_cell(leaf),
+            depth: 0,
+            suspicion: 0,
+            axis: 0,
+            pilot: Vec::new(),
+            markers: Vec::new(),
+            seen: [0.0; 2],
+        })
+        .collect();
+    let mut leaves = Vec::new();
+    partition.locate_all(pilot, &mut leaves);
+    for (p, leaf) in pilot.iter().zip(leaves) {
+        of_leaf[leaf as usize].pilot.push(*p);
+    }
+    for marker in markers {
+        of_leaf[partition.locate(marker.at)].markers.push(*marker);
+    }
+    let mut graded = Vec::with_capacity(of_leaf.len());
+    let mut open = of_leaf;
+    while let Some(mut patch) = open.pop() {
+        match unfilled_axis(&patch) {
+            Some(axis) if patch.depth < DEEPEST => {
+                patch.axis = axis;
+                open.extend(halve(patch));
+            }
+            _ => graded.push(patch),
+        }
+    }
+    graded
+}
+
+/// The axis on which the pilot points span the least share of the patch, if
+/// that is too little.
+fn unfilled_axis(patch: &Patch) -> Option<u8> {
+    if patch.pilot.len() < TELLING {
+        return None;
+    }
+    let fill = |axis: usize| {
+        let (lo, hi) = patch
+            .pilot
+            .iter()
+            .fold((f64::INFINITY, f64::NEG_INFINITY), |(lo, hi), p| (lo.min(p[axis]), hi.max(p[axis])));
+        (hi - lo) / (patch.cell.hi[axis] - patch.cell.lo[axis])
+    };
+    let fills = [fill(0), fill(1)];
+    let axis = usize::from(fills[1] < fills[0]);
+    (fills[axis] < FILL).then_some(axis as u8)
+}
+
+/// Both halves of a patch across its axis.
+fn halve(patch: Patch) -> [Patch; 2] {
+    let axis = usize::from(patch.axis);
+    let at = patch.cell.middle(axis);
+    let (left_pilot, right_pilot) = patch.pilot.into_iter().partition(|p| p[axis] < at);
+    let (left_markers, right_markers) = patch.markers.into_iter().partition(|m| m.at[axis] < at);
+    let [left, right] = patch.cell.split(axis, at);
+    let half = |cell, pilot, markers| Patch {
+        leaf: patch.leaf,
+        cell,
+        depth: patch.depth + 1,
+        suspicion: patch.suspicion,
+        axis: 1 - patch.axis,
+        pilot,
+        markers,
+        seen: [0.0; 2],
+    };
+    [half(left, left_pilot, left_markers), half(right, right_pilot, right_markers)]
+}
+
+/// Applies the rule to each patch and appends its values and errors.
+fn evaluate<E>(
+    partition: &Partition,
+    todo: &mut [Patch],
+    goal: &Goal,
+    f: &mut impl FnMut(&[Direction], &mut [f64]) -> Result<(), E>,
+    values: &mut Vec<f64>,
+    errors: &mut Vec<f64>,
+    largest: &mut [f64],
+) -> Result<(), E> {
+    let rule = Rule::new();
+    let mut directions = Vec::new();
+    let mut rows = Vec::new();
+    // 256 patches are 4352 directions: enough for any transport.
+    for patches in todo.chunks_mut(256) {
+        directions.clear();
+        for patch in patches.iter() {
+            directions.extend(
+                rule.points().iter().map(|&[s, t]| partition.chart().to_direction(patch.cell.at(s, t))),
+            );
+        }
+        rows.clear();
+        rows.resize(directions.len() * goal.components, 0.0);
+        f(&directions, &mut rows)?;
+        for (patch, rows) in patches.iter_mut().zip(rows.chunks_exact(NODES * goal.components)) {
+            let solid_angle = STERADIANS * patch.cell.area();
+            for c in 0..goal.components {
+                let node = |k: usize| rows[k * goal.components + c];
+                let (value, error) = rule.apply(node);
+                values.push(value * solid_angle);
+                errors.push(error * solid_angle);
+                let top = (0..NODES).map(node).fold(0.0, f64::max);
+                largest[c] = largest[c].max(top);
+            }
+            let steering = |k: usize| {
+                let row = &rows[k * goal.components..][..goal.components];
+                [row[0], row[1..1 + goal.controlled].iter().sum::<f64>()]
+            };
+            patch.axis = rule.rougher_axis(|k| steering(k)[0], |k| steering(k)[1]);
+            for k in 0..NODES {
+                let s = steering(k);
+                patch.seen = [patch.seen[0].max(s[0]), patch.seen[1].max(s[1])];
+            }
+        }
+    }
+    Ok(())
+}
+
+/// Which patches must be halved.
+fn to_split(
+    patches: &[Patch],
+    values: &[f64],
+    errors: &[f64],
+    leaves: usize,
+    goal: &Goal,
+    pilot_size: f64,
+) -> Vec<bool> {
+    let n = goal.components;
+    let steering = 1 + goal.controlled;
+    let mut total = vec![0.0; steering];
+    let mut total_error = vec![0.0; steering];
+    let mut mass = vec![0.0; leaves];
+    let mut mass_error = vec![0.0; leaves];
+    for (k, patch) in patches.iter().enumerate() {
+        for c in 0..steering {
+            total[c] += values[k * n + c];
+            total_error[c] += errors[k * n + c];
+        }
+        mass[patch.leaf as usize] += values[k * n];
+        mass_error[patch.leaf as usize] += errors[k * n];
+    }
+    // An error below rounding of the whole cannot be reduced.
+    let allowed = |c: usize| {
+        let relative = if c == 0 { goal.mass } else { goal.value };
+        (relative * total[c].abs()).max(1e-14)
+    };
+    let cell_term = |leaf: usize| {
+        let floor = 1e-3 / goal.draws as f64;
+        goal.draws as f64 * mass_error[leaf] / mass[leaf].max(floor)
+    };
+    let cell_sum: f64 = (0..leaves).map(|l| cell_term(l) * mass_error[l]).sum();
+    let share = 1.0 / patches.len() as f64;
+    patches
+        .iter()
+        .enumerate()
+        .map(|(k, patch)| {
+            if patch.depth >= DEEPEST {
+                return false;
+            }
+            let error = &errors[k * n..];
+            let by_cell = cell_sum > NONCENTRALITY
+                && cell_term(patch.leaf as usize) * error[0] > NONCENTRALITY * share;
+            let by_total =
+                (0..steering).any(|c| total_error[c] > allowed(c) && error[c] > allowed(c) * share);
+            let solid_angle = STERADIANS * patch.cell.area();
+            let by_marker = patch.markers.iter().any(|m| {
+                (m.density > 3.0 * patch.seen[0] && m.density * solid_angle > allowed(0))
+                    || (m.value > 3.0 * patch.seen[1]
+                        && m.value * solid_angle > (1..steering).map(allowed).sum())
+            });
+            let expected = values[k * n] * pilot_size;
+            let found = patch.pilot.len() as f64;
+            let by_pilot = patch.suspicion < SUSPICION
+                && (found - expected).abs() > 5.0 * found.max(expected).max(0.0).sqrt() + 5.0;
+            by_cell || by_total || by_marker || by_pilot
+        })
+        .collect()
+}
+
+#[cfg(test)]
+mod tests {
+    use super::super::chart::Chart;
+    use super::*;
+    use std::f64::consts::PI;
+
+    fn goal(components: usize) -> Goal {
+        Goal { components, controlled: components - 1, draws: 1 << 20, mass: 1e-6, value: 1e-6, evaluations: 1 << 20 }
+    }
+
+    fn run(
+        pilot: Vec<Point>,
+        markers: &[Marker],
+        f: impl Fn(Direction) -> f64,
+    ) -> LeafIntegrals {
+        let partition = Partition::build(Chart::new(0.0), pilot.clone(), 1024);
+        integrate(&partition, &pilot, markers, &goal(1), |wi, out| {
+            for (wi, out) in wi.iter().zip(out) {
+                *out = f(*wi);
+            }
+            Ok::<_, ()>(())
+        })
+        .unwrap()
+    }
+
+    /// A von Mises–Fisher lobe, whose integral over the sphere is exactly 1
+    /// and over a hemisphere about its axis 1 − exp(−κ) … to be closed: over
+    /// all of the sphere.
+    fn von_mises_fisher(kappa: f64, axis: Direction) -> impl Fn(Direction) -> f64 {
+        move |wi| {
+            // 1 − cos = |wi − axis|²/2 without cancellation.
+            let d = wi - axis;
+            kappa / (2.0 * PI * (1.0 - (-2.0 * kappa).exp())) * (-kappa * 0.5 * d.dot(d)).exp()
+        }
+    }
+
+    #[test]
+    fn integrates_smooth_functions_without_a_pilot() {
+        let cases: [(&dyn Fn(Direction) -> f64, f64); 4] = [
+            (&|_| 1.0, 4.0 * PI),
+            (&|wi| wi.z.max(0.0), PI),
+            (&|wi| wi.x * wi.x, 4.0 * PI / 3.0),
+            (&von_mises_fisher(5.0, Direction::from_angles(0.6, 2.0)), 1.0),
+        ];
+        for (f, exact) in cases {
+            let result = run(vec![], &[], f);
+            let (total, error) = result.total(0);
+            assert!(result.converged);
+            assert!((total - exact).abs() <= 1e-6 * exact, "{total} for {exact}");
+            assert!((total - exact).abs() <= error + 1e-12);
+        }
+    }
+
+    #[test]
+    fn finds_a_narrow_lobe_by_its_pilot() {
+        for kappa in [1e2, 1e4, 1e6, 1e8] {
+            let axis = Direction::from_angles(1.0, 2.0);
+            let chart = Chart::new(0.0);
+            // Points of a Fibonacci spiral about the axis with the lobe's own spread.
+            let (t, b) = (axis.cross(Direction::NORMAL).normalized(), axis);
+            let s = b.cross(t);
+            let pilot: Vec<_> = (0..1 << 15)
+                .map(|k| {
+                    let u = (f64::from(k) + 0.5) / f64::from(1 << 15);
+                    let r = (-2.0 * (1.0 - u).ln() / kappa).sqrt();
+                    let (sin, cos) = (2.399_963 * f64::from(k)).sin_cos();
+                    chart.to_point((axis + t * (r * cos) + s * (r * sin)).normalized())
+                })
+                .collect();
+            let result = run(pilot, &[], von_mises_fisher(kappa, axis));
+            let (total, _) = result.total(0);
+            assert!(result.converged, "kappa {kappa}");
+            assert!((total - 1.0).abs() < 1e-6, "kappa {kappa}: {total}");
+            assert!(result.evaluations < 120_000, "kappa {kappa}: {}", result.evaluations);
+        }
+    }
+
+    /// The trap: without pilot or marker the rule misses the lobe and is sure
+    /// of it; a marker brings it back.
+    #[test]
+    fn finds_a_narrow_lobe_by_a_marker() {
+        let axis = Direction::from_angles(1.0, 2.0);
+        let f = von_mises_fisher(1e8, axis);
+        assert!(run(vec![], &[], &f).total(0).0 < 0.1);
+        let marker = Marker { at: Chart::new(0.0).to_point(axis), density: f(axis), value: 0.0 };
+        let (total, _) = run(vec![], &[marker], &f).total(0);
+        assert!((total - 1.0).abs() < 1e-6, "{total}");
+    }
+
+    #[test]
+    fn says_when_it_gives_up() {
+        let partition = Partition::build(Chart::new(0.0), vec![], 1024);
+        let mut few = goal(1);
+        few.evaluations = 5000;
+        let rough = |wi: &[Direction], out: &mut [f64]| {
+            for (wi, out) in wi.iter().zip(out) {
+                *out = 1.0 + (1e4 * wi.x).sin();
+            }
+            Ok::<_, ()>(())
+        };
+        assert!(!integrate(&partition, &[], &[], &few, rough).unwrap().converged);
+    }
+
+    #[test]
+    fn passes_errors_on() {
+        let partition = Partition::build(Chart::new(0.0), vec![], 1024);
+        let result = integrate(&partition, &[], &[], &goal(1), |_, _| Err("broken"));
+        assert_eq!(result.unwrap_err(), "broken");
+    }
+}

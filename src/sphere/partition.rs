@@ -1,0 +1,457 @@
+//! The cell tree: a partition of the sphere into cells of near-equal mass.
+
+use super::chart::{Chart, Point};
+use crate::bsdf::Direction;
+use serde::{Deserialize, Serialize};
+
+/// Split positions lie on a grid of 2⁻⁴⁰ of a square's side, so that a tree is
+/// saved exactly by integers below 2⁵³.
+const GRID: f64 = (1u64 << 40) as f64;
+
+/// The least width of a cell, in steps of the grid: two steps leave room for
+/// a split.
+const NARROWEST: f64 = 2.0 / GRID;
+
+/// Where the pilot has fewer points than this, a cell is not split on their
+/// word.
+const FEWEST_POINTS: usize = 16;
+
+/// A hemisphere in which the pilot has no points is cut into 2⁴ equal cells.
+const EMPTY_DEPTH: u32 = 4;
+
+/// A rectangle of the [chart](Chart)'s squares; it never straddles the horizon.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub struct Cell {
+    /// Lower corner.
+    pub lo: Point,
+    /// Upper corner.
+    pub hi: Point,
+}
+
+impl Cell {
+    /// Area in the square; times 2π its solid angle.
+    pub fn area(&self) -> f64 {
+        (self.hi[0] - self.lo[0]) * (self.hi[1] - self.lo[1])
+    }
+
+    /// Whether it lies on the front hemisphere.
+    pub fn is_front(&self) -> bool {
+        self.lo[0] < 1.0
+    }
+
+    /// Both parts, cut at `at` across `axis`.
+    pub fn split(&self, axis: usize, at: f64) -> [Self; 2] {
+        let mut parts = [*self; 2];
+        parts[0].hi[axis] = at;
+        parts[1].lo[axis] = at;
+        parts
+    }
+
+    /// The middle of `axis`.
+    pub fn middle(&self, axis: usize) -> f64 {
+        0.5 * (self.lo[axis] + self.hi[axis])
+    }
+
+    /// The point at `s`, `t` in [0,1] of its sides.
+    pub fn at(&self, s: f64, t: f64) -> Point {
+        [
+            self.lo[0] + s * (self.hi[0] - self.lo[0]),
+            self.lo[1] + t * (self.hi[1] - self.lo[1]),
+        ]
+    }
+
+    /// Whether it holds the point (lower edges included).
+    pub fn contains(&self, p: Point) -> bool {
+        (0..2).all(|k| p[k] >= self.lo[k] && p[k] < self.hi[k])
+    }
+}
+
+/// A node: a split, or a leaf, whose `child` is itself and whose `at` is
+/// infinite, so that a search may go on past it without a branch.
+#[derive(Clone, Copy, Debug, PartialEq)]
+struct Node {
+    at: f64,
+    child: u32,
+    axis: u32,
+}
+
+/// A partition of the sphere as a binary tree of rectangles in the squares of
+/// a [`Chart`]. The root is the sphere; its children are the hemispheres; the
+/// rest is cut at medians of a pilot sample, so that leaves have near-equal
+/// mass if the pilot's density is right.
+#[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
+#[serde(try_from = "Saved", into = "Saved")]
+pub struct Partition {
+    chart: Chart,
+    nodes: Vec<Node>,
+    depth: usize,
+    /// The cell of each node.
+    cells: Vec<Cell>,
+    /// Nodes that are leaves, in order.
+    leaves: Vec<u32>,
+    /// For each node its leaf number, or `u32::MAX`.
+    leaf_number: Vec<u32>,
+}
+
+impl Partition {
+    /// Builds about `leaves` cells (give or take the empty hemisphere's) from a
+    /// pilot sample given as points of `chart`.
+    pub fn build(chart: Chart, mut pilot: Vec<Point>, leaves: usize) -> Self {
+        let mut tree = Self::sphere(chart);
+        let front = partition_points(&mut pilot, |p| p[0] < 1.0);
+        let total = pilot.len().max(1);
+        let (front_points, back_points) = pilot.split_at_mut(front);
+        for (node, points) in [(1, front_points), (2, back_points)] {
+            if points.len() < FEWEST_POINTS {
+                tree.split_evenly(node, EMPTY_DEPTH);
+            } else {
+                let share = (leaves * points.len()).div_ceil(total);
+                tree.split_at_medians(node, points, share);
+            }
+        }
+        tree.number_leaves();
+        tree
+    }
+
+    fn sphere(chart: Chart) -> Self {
+        let whole = Cell { lo: [0.0, 0.0], hi: [2.0, 1.0] };
+        let mut tree = Self {
+            chart,
+            nodes: vec![Node { at: f64::INFINITY, child: 0, axis: 0 }],
+            depth: 0,
+            cells: vec![whole],
+            leaves: Vec::new(),
+            leaf_number: Vec::new(),
+        };
+        tree.split(0, 0, 1.0);
+        tree
+    }
+
+    fn split(&mut self, node: usize, axis: usize, at: f64) -> usize {
+        let child = self.nodes.len();
+        self.nodes[node] = Node { at, child: child as u32, axis: axis as u32 };
+        for cell in self.cells[node].split(axis, at) {
+            let own = self.nodes.len() as u32;
+            self.nodes.push(Node { at: f64::INFINITY, child: own, axis: 0 });
+            self.cells.push(cell);
+        }
+        child
+    }
+
+    fn split_evenly(&mut self, node: usize, depth: u32) {
+        if depth == 0 {
+            return;
+        }
+        let axis = (depth % 2) as usize;
+        let middle = (self.cells[node].middle(axis) * GRID).round() / GRID;
+        let child = self.split(node, axis, middle);
+        self.split_evenly(child, depth - 1);
+        self.split_evenly(child + 1, depth - 1);
+    }
+
+    fn split_at_medians(&mut self, node: usize, points: &mut [Point], leaves: usize) {
+        if leaves < 2 || points.len() < 2 * FEWEST_POINTS {
+            return;
+        }
+        let extent = |axis: usize| {
+            let (lo, hi) = points.iter().fold((f64::INFINITY, f64::NEG_INFINITY), |(lo, hi), p| {
+                (lo.min(p[axis]), hi.max(p[axis]))
+            });
+            hi - lo
+        };
+        let wide = usize::from(extent(1) > extent(0));
+        // Many equal directions may leave no room on one axis.
+        for axis in [wide, 1 - wide] {
+            let half = points.len() / 2;
+            let (_, median, _) = points.select_nth_unstable_by(half, |a, b| a[axis].total_cmp(&b[axis]));
+            let at = (median[axis] * GRID).round() / GRID;
+            let cell = self.cells[node];
+            if at - cell.lo[axis] < NARROWEST || cell.hi[axis] - at < NARROWEST {
+                continue;
+            }
+            let below = partition_points(points, |p| p[axis] < at);
+            let child = self.split(node, axis, at);
+            let (left, right) = points.split_at_mut(below);
+            self.split_at_medians(child, left, leaves / 2);
+            self.split_at_medians(child + 1, right, leaves - leaves / 2);
+            return;
+        }
+    }
+
+    fn number_leaves(&mut self) {
+        self.leaf_number = vec![u32::MAX; self.nodes.len()];
+        self.leaves.clear();
+        let mut depth_of = vec![0usize; self.nodes.len()];
+        for k in 0..self.nodes.len() {
+            match self.children(k) {
+                Some([left, right]) => {
+                    depth_of[left] = depth_of[k] + 1;
+                    depth_of[right] = depth_of[k] + 1;
+                }
+                None => {
+                    self.leaf_number[k] = self.leaves.len() as u32;
+                    self.leaves.push(k as u32);
+                }
+            }
+        }
+        self.depth = depth_of.into_iter().max().unwrap_or(0);
+    }
+
+    /// The chart of its cells.
+    pub fn chart(&self) -> &Chart {
+        &self.chart
+    }
+
+    /// Number of leaves.
+    pub fn len(&self) -> usize {
+        self.leaves.len()
+    }
+
+    /// Never: a partition has at least two leaves.
+    pub fn is_empty(&self) -> bool {
+        self.leaves.is_empty()
+    }
+
+    /// Number of nodes; 0 is the root, 1 the front and 2 the back hemisphere.
+    pub fn nodes(&self) -> usize {
+        self.nodes.len()
+    }
+
+    /// Both children of a node, or `None` of a leaf. Children have larger
+    /// numbers than their parent.
+    pub fn children(&self, node: usize) -> Option<[usize; 2]> {
+        let child = self.nodes[node].child as usize;
+        (child != node).then_some([child, child + 1])
+    }
+
+    /// The cell of a node.
+    pub fn node_cell(&self, node: usize) -> Cell {
+        self.cells[node]
+    }
+
+    /// The cell of a leaf.
+    pub fn leaf_cell(&self, leaf: usize) -> Cell {
+        self.cells[self.leaves[leaf] as usize]
+    }
+
+    /// The node of a leaf.
+    pub fn leaf_node(&self, leaf: usize) -> usize {
+        self.leaves[leaf] as usize
+    }
+
+    /// The same tree with the marked leaves cut into 2⁴ equal cells: where a
+    /// pdf has mass that no pilot point stands for.
+    pub fn refined(mut self, marked: &[bool]) -> Self {
+        let nodes: Vec<_> =
+            (0..self.len()).filter(|leaf| marked[*leaf]).map(|leaf| self.leaf_node(leaf)).collect();
+        for node in nodes {
+            let cell = self.cells[node];
+            let room = (0..2).all(|k| cell.hi[k] - cell.lo[k] > 16.0 * NARROWEST);
+            if room {
+                self.split_evenly(node, EMPTY_DEPTH);
+            }
+        }
+        self.number_leaves();
+        self
+    }
+
+    /// The leaf that holds a point.
+    pub fn locate(&self, p: Point) -> usize {
+        let mut node = 0;
+        while let Some([left, right]) = self.children(node) {
+            let split = self.nodes[node];
+            node = if p[split.axis as usize] >= split.at { right } else { left };
+        }
+        self.leaf_number[node] as usize
+    }
+
+    /// The leaf that holds a direction.
+    pub fn locate_direction(&self, d: Direction) -> usize {
+        self.locate(self.chart.to_point(d))
+    }
+
+    /// The leaves of many points: as [`locate`](Self::locate), level by level,
+    /// so that the searches overlap.
+    pub fn locate_all(&self, points: &[Point], leaves: &mut Vec<u32>) {
+        leaves.clear();
+        leaves.resize(points.len(), 0);
+        let nodes = &self.nodes[..];
+        for (points, leaves) in points.chunks(64).zip(leaves.chunks_mut(64)) {
+            for _ in 0..self.depth {
+                for (p, node) in points.iter().zip(leaves.iter_mut()) {
+                    let split = &nodes[*node as usize];
+                    let value = if split.axis == 0 { p[0] } else { p[1] };
+                    *node = split.child + u32::from(value >= split.at);
+                }
+            }
+        }
+        for node in leaves {
+            *node = self.leaf_number[*node as usize];
+        }
+    }
+
+    /// Sums over leaves for each node, leaves' own values at the leaves.
+    pub fn sum_up<T: Copy + std::ops::Add<Output = T>>(&self, of_leaves: &[T]) -> Vec<T> {
+        let mut of_nodes: Vec<T> = self
+            .leaf_number
+            .iter()
+            .map(|&leaf| of_leaves[if leaf == u32::MAX { 0 } else { leaf as usize }])
+            .collect();
+        for node in (0..self.nodes.len()).rev() {
+            if let Some([left, right]) = self.children(node) {
+                of_nodes[node] = of_nodes[left] + of_nodes[right];
+            }
+        }
+        of_nodes
+    }
+}
+
+/// Moves the points for which `first` holds to the front; returns their number.
+fn partition_points(points: &mut [Point], first: impl Fn(&Point) -> bool) -> usize {
+    let mut count = 0;
+    for k in 0..points.len() {
+        if first(&points[k]) {
+            points.swap(k, count);
+            count += 1;
+        }
+    }
+    count
+}
+
+/// The saved form: `phi0`, and in preorder −1 for a leaf or 2·at·2⁴⁰ + axis
+/// for a split.
+#[derive(Serialize, Deserialize)]
+struct Saved {
+    phi0: f64,
+    preorder: Vec<i64>,
+}
+
+impl From<Partition> for Saved {
+    fn from(tree: Partition) -> Self {
+        let mut preorder = Vec::with_capacity(tree.nodes());
+        let mut open = vec![0];
+        while let Some(node) = open.pop() {
+            match tree.children(node) {
+                None => preorder.push(-1),
+                Some([left, right]) => {
+                    let split = tree.nodes[node];
+                    preorder.push(2 * (split.at * GRID) as i64 + i64::from(split.axis));
+                    open.extend([right, left]);
+                }
+            }
+        }
+        Self { phi0: tree.chart.phi0(), preorder }
+    }
+}
+
+impl TryFrom<Saved> for Partition {
+    type Error = String;
+
+    fn try_from(saved: Saved) -> Result<Self, String> {
+        let mut tree = Self::sphere(Chart::new(saved.phi0));
+        let mut open = vec![0usize];
+        let mut codes = saved.preorder.iter();
+        while let Some(node) = open.pop() {
+            let code = *codes.next().ok_or("the cell tree ends early")?;
+            if code < 0 {
+                continue;
+            }
+            let (axis, at) = ((code & 1) as usize, (code >> 1) as f64 / GRID);
+            let cell = tree.cells[node];
+            let child = if node == 0 {
+                if (axis, at) != (0, 1.0) {
+                    return Err("the cell tree does not start with the hemispheres".into());
+                }
+                1
+            } else {
+                if !(at > cell.lo[axis] && at < cell.hi[axis]) {
+                    return Err(format!("the cell tree has a split at {at} outside of {cell:?}"));
+                }
+                tree.split(node, axis, at)
+            };
+            open.extend([child + 1, child]);
+        }
+        if codes.next().is_some() {
+            return Err("the cell tree has nodes to spare".into());
+        }
+        tree.number_leaves();
+        Ok(tree)
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use crate::statistics::{Stream, StreamKey};
+
+    fn random(n: usize, seed: u64) -> Vec<Point> {
+        let mut stream: Stream = StreamKey::new(seed).block(0);
+        (0..n)
+            .map(|_| {
+                let (a, b) = (stream.next_f64(), stream.next_f64());
+                // Dense at a corner, as a narrow lobe is.
+                [a.powi(6), b * b]
+            })
+            .collect()
+    }
+
+    #[test]
+    fn leaves_have_near_equal_mass() {
+        let tree = Partition::build(Chart::new(0.3), random(1 << 15, 1), 1024);
+        let mut counts = vec![0u64; tree.len()];
+        for p in random(1 << 18, 2) {
+            counts[tree.locate(p)] += 1;
+        }
+        // 1024 leaves of the front and 16 of the empty back.
+        assert_eq!(tree.len(), 1024 + 16);
+        let mean = (1 << 18) as f64 / 1024.0;
+        let front: Vec<_> =
+            (0..tree.len()).filter(|&l| tree.leaf_cell(l).is_front()).map(|l| counts[l] as f64).collect();
+        // A leaf holds 32 pilot points, ±18 %: five deviations and the count's own noise.
+        assert!(front.iter().all(|c| (c / mean - 1.0).abs() < 1.4), "{front:?}");
+        assert_eq!(tree.sum_up(&counts)[0], 1 << 18);
+    }
+
+    #[test]
+    fn cells_tile_the_sphere() {
+        let tree = Partition::build(Chart::new(0.3), random(1 << 12, 1), 256);
+        let area: f64 = (0..tree.len()).map(|l| tree.leaf_cell(l).area()).sum();
+        assert!((area - 2.0).abs() < 1e-12);
+        let points = random(1000, 3);
+        let mut leaves = Vec::new();
+        tree.locate_all(&points, &mut leaves);
+        for (p, leaf) in points.iter().zip(leaves) {
+            assert_eq!(tree.locate(*p), leaf as usize);
+            assert!(tree.leaf_cell(leaf as usize).contains(*p));
+        }
+    }
+
+    #[test]
+    fn survives_equal_points_and_none() {
+        for points in [vec![], vec![[0.25, 0.75]; 5000], vec![[1.5, 0.5]; 3]] {
+            let tree = Partition::build(Chart::new(0.0), points, 1024);
+            assert!(tree.len() >= 17 && tree.len() < 200, "{}", tree.len());
+        }
+    }
+
+    #[test]
+    fn is_saved_exactly() {
+        let tree = Partition::build(Chart::new(0.0), random(1 << 12, 1), 256);
+        let text = serde_json::to_string(&tree).unwrap();
+        let again: Partition = serde_json::from_str(&text).unwrap();
+        assert_eq!(tree.len(), again.len());
+        let points = random(2000, 9);
+        for p in points {
+            let cells = [tree.leaf_cell(tree.locate(p)), again.leaf_cell(again.locate(p))];
+            assert_eq!(cells[0], cells[1]);
+        }
+        assert_eq!(text, serde_json::to_string(&again).unwrap());
+    }
+
+    #[test]
+    fn refuses_a_broken_tree() {
+        for text in [r#"{"phi0":0,"preorder":[]}"#, r#"{"phi0":0,"preorder":[3,-1,-1]}"#] {
+            assert!(serde_json::from_str::<Partition>(text).is_err(), "{text}");
+        }
+    }
+}
