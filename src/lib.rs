@@ -3,3 +3,4 @@
 pub mod bsdf;
 pub mod models;
 pub mod registry;
+pub mod statistics;
