@@ -64,6 +64,9 @@ fn ln_tail(k: u64, n: u64, p: f64, q: f64) -> f64 {
 /// P(X ≥ k) = I_p(k, n−k+1) = pmf(k)·q·(continued fraction DLMF 8.17.22), by modified Lentz, for
 /// k above about np, where it converges within O(√n) steps.
 fn ln_small_tail(k: u64, n: u64, p: f64, q: f64) -> f64 {
+    if p > 0.5 {
+        return ln_summed_tail(k, n, p, q);
+    }
     let (a, b) = (k as f64, (n - k) as f64 + 1.0);
     let mut c = 1.0;
     let mut d = 1.0 / (1.0 - (a + b) * p / (a + 1.0));
@@ -84,6 +87,22 @@ fn ln_small_tail(k: u64, n: u64, p: f64, q: f64) -> f64 {
         }
     }
     (ln_binomial(k, n, p, q) + ln_of(q, p) + libm::log(value)).min(0.0)
+}
+
+/// The same as pmf(k)·Σ Π (n−i)p/((i+1)q), which uses p/q alone: near p = 1 the fraction needs
+/// digits of 1 − p that p no longer has. At most some 9√(npq) terms, as k is above about np.
+fn ln_summed_tail(k: u64, n: u64, p: f64, q: f64) -> f64 {
+    let odds = p / q;
+    let (mut term, mut sum) = (1.0, 1.0);
+    for i in k..n {
+        let ratio = (n - i) as f64 / (i + 1) as f64 * odds;
+        term *= ratio;
+        sum += term;
+        if ratio < 1.0 && term * ratio < 1e-17 * sum * (1.0 - ratio) {
+            break;
+        }
+    }
+    (ln_binomial(k, n, p, q) + libm::log(sum)).min(0.0)
 }
 
 #[cfg(test)]
