@@ -106,6 +106,7 @@ fn ln_upper_fraction(a: f64, x: f64) -> f64 {
 }
 
 #[cfg(test)]
+#[expect(clippy::excessive_precision, reason = "tables keep the digits they were printed with")]
 mod tests {
     use super::*;
 

@@ -33,16 +33,11 @@ pub fn bernstein_ln_tail(deviation: f64, variance: f64, bound: f64, n: u64) -> f
         return 0.0;
     }
     let exponent = n as f64 * t * t / (2.0 * variance + 2.0 * bound * t / 3.0);
-    if n == 0 {
-        0.0
-    } else if exponent < LN_2 {
-        0.0
-    } else {
-        LN_2 - exponent
-    }
+    if n == 0 || exponent < LN_2 { 0.0 } else { LN_2 - exponent }
 }
 
 #[cfg(test)]
+#[expect(clippy::excessive_precision, reason = "tables keep the digits they were printed with")]
 mod tests {
     use super::super::streams::StreamKey;
     use super::*;

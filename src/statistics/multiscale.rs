@@ -60,7 +60,8 @@ impl<'a> Tree<'a> {
                 return Err(TreeError::Children(v));
             }
             (taken[l], taken[r]) = (true, true);
-            if !((mass[l] + mass[r] - mass[v]).abs() <= ADDITIVE * mass[v]) {
+            let gap = (mass[l] + mass[r] - mass[v]).abs();
+            if gap.is_nan() || gap > ADDITIVE * mass[v] {
                 return Err(TreeError::Mass(v));
             }
             if counts[l].checked_add(counts[r]) != Some(counts[v]) {

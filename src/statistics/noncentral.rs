@@ -155,6 +155,7 @@ fn ln_lower_sum(a: f64, y: f64, m: f64) -> f64 {
 }
 
 #[cfg(test)]
+#[expect(clippy::excessive_precision, reason = "tables keep the digits they were printed with")]
 mod tests {
     use super::*;
 

@@ -7,7 +7,10 @@
 pub fn find_root(mut f: impl FnMut(f64) -> f64, a: f64, b: f64) -> f64 {
     let (mut a, mut b) = (a, b);
     let (mut fa, mut fb) = (f(a), f(b));
-    debug_assert!(!(fa * fb > 0.0), "no sign change: {fa} at {a}, {fb} at {b}");
+    debug_assert!(
+        (fa > 0.0) != (fb > 0.0) || fa == 0.0 || fb == 0.0,
+        "no sign change: {fa} at {a}, {fb} at {b}"
+    );
     let mut t = 0.5;
     for _ in 0..200 {
         let x = a + t * (b - a);

@@ -42,6 +42,7 @@ pub fn kolmogorov_sf(t: f64) -> f64 {
 }
 
 #[cfg(test)]
+#[expect(clippy::excessive_precision, reason = "tables keep the digits they were printed with")]
 mod tests {
     use super::super::streams::StreamKey;
     use super::*;
