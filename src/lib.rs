@@ -1,6 +1,10 @@
 //! A goniophotometer for material code.
 
 pub mod bsdf;
+pub mod checks;
+pub mod evidence;
 pub mod models;
 pub mod registry;
 pub mod sphere;
+pub mod statistics;
+pub mod suite;

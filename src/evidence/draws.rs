@@ -207,7 +207,7 @@ impl Draws {
         scratch: &mut Scratch,
     ) -> Result<(), Halt> {
         let stage = if self.attempt == 0 { "draws" } else { "confirmation" };
-        let mut stream = setup.key.clone().with("stage", stage).block(self.samples / BLOCK);
+        let mut stream = setup.key.with("stage", stage).block(self.samples / BLOCK);
         let Scratch { u, samples, points, leaves, value, density, lights } = scratch;
         u.resize(BLOCK as usize * meter.dimensions(), 0.0);
         stream.fill(meter.coarse_u(), u);
@@ -297,12 +297,13 @@ impl Draws {
             Precision::F64 => (1e-9, 1e-9),
             Precision::F32 => (1e-4, 1e-4),
         };
-        let known = self.discrete.iter_mut().find(|d| {
+        let known = self.discrete.iter().position(|d| {
             let difference = d.wi - wi;
             difference.dot(difference) < near * near && d.lobe == lobe
         });
         match known {
-            Some(d) => {
+            Some(k) => {
+                let d = &mut self.discrete[k];
                 d.count += 1;
                 let mut error = super::tally::relative_error(d.probability, probability, 1e-12);
                 for (a, b) in d.weight.iter().zip(weights) {

@@ -90,14 +90,14 @@ impl Repeats {
         let wi = probes::directions(setup, pilot, ROWS / 2);
         let (d, channels) = (meter.dimensions(), meter.channels());
         let mut u = vec![0.0; ROWS * d];
-        setup.key.clone().with("stage", "repeats").block(0).fill(meter.coarse_u(), &mut u);
+        setup.key.with("stage", "repeats").block(0).fill(meter.coarse_u(), &mut u);
         let (mut first, mut again) = (Samples::default(), Samples::default());
         let (mut values, mut others) = ([vec![], vec![]], [vec![], vec![]]);
         let samples = has.sample && meter.description.claims.rng == RandomNumbers::External;
         if samples {
             meter.sample(setup.wo, &u, setup.transport, &mut first)?;
         }
-        let mut all = |wi: &[Direction], values: &mut [Vec<f64>; 2]| -> Result<(), Halt> {
+        let all = |wi: &[Direction], values: &mut [Vec<f64>; 2]| -> Result<(), Halt> {
             if has.eval {
                 meter.eval(setup.wo, wi, setup.transport, &mut values[0])?;
             }
@@ -159,7 +159,7 @@ pub fn rotations(meter: &Meter, setup: &Setup, pilot: &Pilot) -> Result<Tally, H
     if has.pdf {
         meter.pdf(setup.wo, &wi, setup.transport, &mut density)?;
     }
-    let mut stream = setup.key.clone().with("stage", "rotations").block(0);
+    let mut stream = setup.key.with("stage", "rotations").block(0);
     for _ in 0..ANGLES {
         let angle = std::f64::consts::TAU * stream.next_f64();
         let wo = setup.wo.rotated(angle);

@@ -248,7 +248,7 @@ fn cross_check(
     if !meter.description.has.pdf {
         return Ok((0.0, 0.0));
     }
-    let mut seed = setup.key.clone().with("stage", "cross-check").block(0);
+    let mut seed = setup.key.with("stage", "cross-check").block(0);
     let mut density = Vec::new();
     let mut totals = Vec::new();
     for _ in 0..CROSS_SETS {

@@ -108,7 +108,7 @@ impl Jacobian {
 /// Points with their derivatives, where these are well defined.
 fn slopes(meter: &Meter, setup: &Setup) -> Result<Vec<Point>, Halt> {
     let d = meter.dimensions();
-    let mut stream = setup.key.clone().with("stage", "jacobian").block(0);
+    let mut stream = setup.key.with("stage", "jacobian").block(0);
     let offsets = [-2.0 * STEP, -STEP, STEP, 2.0 * STEP];
     let (mut u, mut samples, mut density) = (Vec::new(), Samples::default(), Vec::new());
     for _ in 0..POINTS {
@@ -156,7 +156,7 @@ fn slopes(meter: &Meter, setup: &Setup) -> Result<Vec<Point>, Halt> {
 /// Whether wi jumps anywhere on lines through the unit square: a step that
 /// does not shrink when it is halved again and again.
 fn has_jump(meter: &Meter, setup: &Setup, active: [usize; 2]) -> Result<bool, Halt> {
-    let mut stream = setup.key.clone().with("stage", "jumps").block(0);
+    let mut stream = setup.key.with("stage", "jumps").block(0);
     let mut samples = Samples::default();
     for axis in active {
         for _ in 0..LINES {

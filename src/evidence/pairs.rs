@@ -126,7 +126,7 @@ impl Pairs {
         throughput: &[f64],
     ) -> Result<(), Halt> {
         let mut u = vec![0.0; REVERSED * meter.dimensions()];
-        setup.key.clone().with("stage", "reversed").block(0).fill(meter.coarse_u(), &mut u);
+        setup.key.with("stage", "reversed").block(0).fill(meter.coarse_u(), &mut u);
         let mut samples = Samples::default();
         meter.sample(wi, &u, setup.transport, &mut samples)?;
         let back = (0..samples.len())

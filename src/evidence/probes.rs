@@ -11,7 +11,7 @@ use crate::sphere::Chart;
 pub fn directions(setup: &Setup, pilot: &Pilot, spread: usize) -> Vec<Direction> {
     let chart = Chart::new(setup.wo.phi());
     let wo = setup.wo;
-    let mut seed = setup.key.clone().with("stage", "probes").block(0);
+    let mut seed = setup.key.with("stage", "probes").block(0);
     let seed = (seed.next_u64() >> 32) as u32;
     let mut all = vec![wo, wo.mirrored(), Direction::NORMAL * 1f64.copysign(wo.z)];
     let sides = [

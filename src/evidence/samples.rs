@@ -50,6 +50,8 @@ pub struct SampleIdentities {
     pub zero_pdf: Tally,
     /// The most frequent direction among continuous samples, and its share.
     pub repeated: Option<(Direction, f64)>,
+    /// pdf() and eval() do not stand out at the directions of discrete lobes.
+    pub discrete_value: Option<Tally>,
 }
 
 impl SampleIdentities {
@@ -69,7 +71,7 @@ impl SampleIdentities {
         let has = meter.description.has;
         for block in 0..BLOCKS {
             u.resize(BLOCK as usize * d, 0.0);
-            setup.key.clone().with("stage", "pilot").block(block).fill(meter.coarse_u(), &mut u);
+            setup.key.with("stage", "pilot").block(block).fill(meter.coarse_u(), &mut u);
             meter.sample(setup.wo, &u, setup.transport, &mut samples)?;
             found.drawn += BLOCK;
             let rows: Vec<usize> = (0..samples.len()).filter(|k| samples.lobe[*k].is_continuous()).collect();
@@ -136,6 +138,9 @@ impl SampleIdentities {
         }
         pilot.drawn = found.drawn;
         found.repeated = pilot.most_repeated();
+        if !pilot.discrete.is_empty() {
+            found.discrete_value = Some(discrete_value(meter, setup, &pilot)?);
+        }
         Ok((found, pilot))
     }
 
@@ -166,4 +171,33 @@ impl Pilot {
         let [x, y, z] = longest[0].map(f64::from_bits);
         (longest.len() > 1).then(|| (Direction::new(x, y, z), longest.len() as f64 / self.wi.len() as f64))
     }
+}
+
+/// pdf and eval at each discrete direction against those 1e-5 rad beside it: a
+/// delta function that leaks into them is there and nowhere else.
+fn discrete_value(meter: &Meter, setup: &Setup, pilot: &Pilot) -> Result<Tally, Halt> {
+    const BESIDE: f64 = 1e-5;
+    let mut tally = Tally::new(0.5);
+    let mut there = Vec::new();
+    for draw in &pilot.discrete {
+        let tangent = draw.wi.cross(Direction::new(0.6, 0.8, 0.0)).normalized();
+        let beside = (draw.wi + tangent * BESIDE).normalized();
+        let mut look = |name: &str, width: usize, values: &[f64]| {
+            for c in 0..width {
+                let (at, near) = (values[c], values[width + c]);
+                tally.look(relative_error(at, near, setup.floor()), || {
+                    Place::pair(setup.wo, draw.wi).value(name, at).value("beside", near)
+                });
+            }
+        };
+        if meter.description.has.pdf {
+            meter.pdf(setup.wo, &[draw.wi, beside], setup.transport, &mut there)?;
+            look("pdf", 1, &there);
+        }
+        if meter.description.has.eval {
+            meter.eval(setup.wo, &[draw.wi, beside], setup.transport, &mut there)?;
+            look("eval", meter.channels(), &there);
+        }
+    }
+    Ok(tally)
 }

@@ -1,7 +1,7 @@
 //! What a measurement needs to know of its case.
 
 use crate::bsdf::{Claims, Direction, Precision, Transport};
-use crate::statistics::StreamKey;
+use crate::statistics::streams::StreamKey;
 
 /// The place, conventions and random numbers of a case.
 #[derive(Clone, Debug)]

@@ -135,7 +135,7 @@ impl Response {
 
 fn draw(meter: &Meter, setup: &Setup, wo: Direction, rows: usize) -> Result<Samples, Halt> {
     let mut u = vec![0.0; rows * meter.dimensions()];
-    setup.key.clone().with("stage", "variations").block(0).fill(meter.coarse_u(), &mut u);
+    setup.key.with("stage", "variations").block(0).fill(meter.coarse_u(), &mut u);
     let mut samples = Samples::default();
     meter.sample(wo, &u, setup.transport, &mut samples)?;
     Ok(samples)

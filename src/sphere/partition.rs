@@ -382,7 +382,7 @@ impl TryFrom<Saved> for Partition {
 #[cfg(test)]
 mod tests {
     use super::*;
-    use crate::statistics::{Stream, StreamKey};
+    use crate::statistics::streams::{Stream, StreamKey};
 
     fn random(n: usize, seed: u64) -> Vec<Point> {
         let mut stream: Stream = StreamKey::new(seed).block(0);

@@ -1,0 +1,157 @@
+//! A plan: the list of cases to run, with the terms on which they are judged.
+
+use crate::bsdf::{Claims, Cosine, Direction, OffSupport, RandomNumbers, Subject, Transport, TransportModes};
+use crate::evidence::Company;
+use crate::registry::Parameters;
+use serde::{Deserialize, Serialize};
+use std::sync::Arc;
+use std::time::Duration;
+
+/// Claims that a suite makes in place of the subject's own.
+#[derive(Clone, Debug, Default, PartialEq, Serialize, Deserialize)]
+#[serde(deny_unknown_fields)]
+#[expect(missing_docs, reason = "the fields are those of Claims")]
+pub struct ClaimsPatch {
+    pub reciprocal: Option<bool>,
+    pub energy_conserving: Option<bool>,
+    pub lossless: Option<bool>,
+    pub isotropic: Option<bool>,
+    pub reflective: Option<bool>,
+    pub transmissive: Option<bool>,
+    pub two_sided: Option<bool>,
+    pub stochastic: Option<bool>,
+    pub eta: Option<f64>,
+    pub cosine: Option<Cosine>,
+    pub transport: Option<TransportModes>,
+    pub off_support: Option<OffSupport>,
+    pub rng: Option<RandomNumbers>,
+}
+
+impl ClaimsPatch {
+    /// Every name, for messages about unknown ones.
+    pub const NAMES: [&str; 13] = [
+        "reciprocal",
+        "energy_conserving",
+        "lossless",
+        "isotropic",
+        "reflective",
+        "transmissive",
+        "two_sided",
+        "stochastic",
+        "eta",
+        "cosine",
+        "transport",
+        "off_support",
+        "rng",
+    ];
+
+    /// The subject's claims with these in their place.
+    pub fn over(&self, own: Claims) -> Claims {
+        Claims {
+            reciprocal: self.reciprocal.unwrap_or(own.reciprocal),
+            energy_conserving: self.energy_conserving.unwrap_or(own.energy_conserving),
+            lossless: self.lossless.unwrap_or(own.lossless),
+            isotropic: self.isotropic.unwrap_or(own.isotropic),
+            reflective: self.reflective.unwrap_or(own.reflective),
+            transmissive: self.transmissive.unwrap_or(own.transmissive),
+            two_sided: self.two_sided.unwrap_or(own.two_sided),
+            stochastic: self.stochastic.unwrap_or(own.stochastic),
+            eta: self.eta.or(own.eta),
+            cosine: self.cosine.unwrap_or(own.cosine),
+            transport: self.transport.unwrap_or(own.transport),
+            off_support: self.off_support.unwrap_or(own.off_support),
+            rng: self.rng.unwrap_or(own.rng),
+        }
+    }
+}
+
+/// A check whose failure the suite accepts, with the reason.
+#[derive(Clone, Debug, PartialEq, Eq, Serialize, Deserialize)]
+pub struct Waiver {
+    /// Which check.
+    pub check: String,
+    /// Why its failure is meant.
+    pub because: String,
+}
+
+/// What is judged, and how sharply.
+#[derive(Clone, Debug, PartialEq)]
+pub struct Settings {
+    /// Draws at most, per subject and wo (rounded up to whole blocks of 4096).
+    pub samples: u64,
+    /// RMS relative cell error that counts as wrong; by precision if `None`.
+    pub tolerance: Option<f64>,
+    /// A pass must have been able to see this much.
+    pub detect: f64,
+    /// What a case may spend in its subject.
+    pub time_limit: Duration,
+}
+
+impl Default for Settings {
+    fn default() -> Self {
+        Self { samples: 1 << 18, tolerance: None, detect: 0.03, time_limit: Duration::from_secs(60) }
+    }
+}
+
+/// One subject at one direction.
+#[derive(Clone)]
+pub struct Case {
+    /// The suite's entry that it belongs to: a row of the matrix.
+    pub group: String,
+    /// How the subject is written; with seed and wo it names the random numbers.
+    pub spelling: String,
+    /// The subject.
+    pub subject: Arc<dyn Subject>,
+    /// Its parameters.
+    pub parameters: Parameters,
+    /// Polar angle of wo in degrees, over 90 on the back side.
+    pub theta_deg: f64,
+    /// Azimuth of wo in degrees.
+    pub phi_deg: f64,
+    /// The mode of transport.
+    pub transport: Transport,
+    /// Claims in place of the subject's.
+    pub claims: ClaimsPatch,
+    /// Accepted failures.
+    pub waivers: Vec<Waiver>,
+    /// Variants and reference.
+    pub company: Company,
+    /// How the reference is written, for the command that reproduces the case.
+    pub reference: Option<String>,
+    /// Ids of the checks to run; all where empty.
+    pub checks: Vec<String>,
+    /// Sharpness.
+    pub settings: Settings,
+}
+
+impl Case {
+    /// The given direction.
+    pub fn wo(&self) -> Direction {
+        Direction::from_angles(self.theta_deg.to_radians(), self.phi_deg.to_radians())
+    }
+
+    /// As people name it: subject, direction, and mode where it is not radiance.
+    pub fn label(&self) -> String {
+        let mode = match self.transport {
+            Transport::Radiance => "",
+            Transport::Importance => " importance",
+        };
+        format!("{} θ={}° φ={}°{mode}", self.spelling, self.theta_deg, self.phi_deg)
+    }
+}
+
+/// The cases to run and what they share.
+#[derive(Clone)]
+pub struct Plan {
+    /// The suite's name.
+    pub suite: String,
+    /// Seed of all random numbers.
+    pub seed: u64,
+    /// Probability that a run of correct subjects shows any failure.
+    pub false_alarm: f64,
+    /// Each statistical test's part of it; shared out equally where `None`, given
+    /// where a case is run alone on the terms of its suite.
+    pub share: Option<f64>,
+    /// The cases.
+    pub cases: Vec<Arc<Case>>,
+}
