@@ -2,9 +2,11 @@
 
 pub mod bsdf;
 pub mod checks;
+pub mod engine;
 pub mod evidence;
 pub mod models;
 pub mod registry;
+pub mod report;
 pub mod sphere;
 pub mod statistics;
 pub mod suite;

@@ -1,6 +1,8 @@
 //! Weights average to the integral of f.
 
-use super::outcome::{Check, Effect, Judgement, Outcome, POWER, Terms, Verdict, needs_determinism, needs_functions};
+use super::outcome::{
+    Check, Effect, Judgement, Outcome, POWER, Terms, Verdict, needs_determinism, needs_functions,
+};
 use crate::bsdf::Description;
 use crate::evidence::{Draws, Evidence, Integrals, Measurement};
 use crate::statistics::means::{bernstein_deviation, bernstein_ln_tail};

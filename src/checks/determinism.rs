@@ -67,8 +67,9 @@ impl Check for Determinism {
             ..pass
         };
         if ln_p < terms.ln_tail {
-            let message =
-                format!("successive samples depend on each other (X² = {x2:.0} with {dof} degrees of freedom)");
+            let message = format!(
+                "successive samples depend on each other (X² = {x2:.0} with {dof} degrees of freedom)"
+            );
             return Outcome { verdict: Verdict::Fail, message, ..outcome }.into();
         }
         let message = format!("{held}; {pairs} successive pairs are independent");

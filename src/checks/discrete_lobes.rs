@@ -54,7 +54,11 @@ impl Check for DiscreteLobes {
                 100.0 * share
             );
             let place = Place::pair(evidence.wo, wi);
-            return fail(message, Some(place), Some(Effect::exact("share of repeated samples", share, REPEATED)));
+            return fail(
+                message,
+                Some(place),
+                Some(Effect::exact("share of repeated samples", share, REPEATED)),
+            );
         }
         let Some(draws) = evidence.draws.get(terms.attempt) else { return Judgement::Missing };
         if draws.discrete.is_empty() {
@@ -146,8 +150,7 @@ fn probabilities(evidence: &Evidence, terms: &Terms) -> Judgement {
         lobe.probability
     );
     let p = lobe.probability.min(1.0);
-    let deviations =
-        normal::quantile(terms.ln_tail - correction) + normal::quantile((1.0 - POWER).ln());
+    let deviations = normal::quantile(terms.ln_tail - correction) + normal::quantile((1.0 - POWER).ln());
     let limit = terms.mean_tolerance + deviations * ((1.0 - p) / (p * n as f64)).sqrt();
     let outcome = Outcome {
         certain: false,

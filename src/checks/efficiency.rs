@@ -52,6 +52,7 @@ impl Check for Efficiency {
             integrals.largest_weight
         );
         let effect = Effect::exact("effective draws per draw", effective, 0.0);
-        Outcome { effect: Some(effect), channel: Some(channel), ..Outcome::new(Verdict::Pass, message) }.into()
+        Outcome { effect: Some(effect), channel: Some(channel), ..Outcome::new(Verdict::Pass, message) }
+            .into()
     }
 }

@@ -68,7 +68,8 @@ impl Check for Energy {
         }
         let Some((channel, flux, error)) = flux(evidence, false) else { return Judgement::Missing };
         let tolerance = tolerance(evidence.description.precision);
-        let effect = Effect::interval("flux − 1", (flux - 1.0, flux - 1.0 - error, flux - 1.0 + error), tolerance);
+        let effect =
+            Effect::interval("flux − 1", (flux - 1.0, flux - 1.0 - error, flux - 1.0 + error), tolerance);
         let outcome = Outcome {
             effect: Some(effect),
             channel: Some(channel),

@@ -6,7 +6,9 @@ use super::outcome::{
 use crate::bsdf::Description;
 use crate::evidence::{Draws, Evidence, Measurement, Place};
 use crate::sphere::Partition;
-use crate::statistics::multiscale::{Haar, MIN_EXPECTED, Pooled, Tree, haar_largest, haar_levels, level_cut, pearson};
+use crate::statistics::multiscale::{
+    Haar, MIN_EXPECTED, Pooled, Tree, haar_largest, haar_levels, level_cut, pearson,
+};
 use crate::statistics::{binomial, chi_square, effect, noncentral};
 
 /// A single cell may be off by this many times the RMS tolerance: the local
@@ -89,7 +91,11 @@ pub fn level_p_values(evidence: &Evidence) -> Vec<f64> {
     let Some(tree) = Cells::new(partition, &integrals.pdf, draws).shape() else { return Vec::new() };
     // A level with few terms is discrete where counts are small; 20 per cell and
     // a few cells make it smooth.
-    haar_levels(&tree.haar()).iter().filter(|(_, dof)| *dof >= 1.0).map(|(s, dof)| chi_square::sf(*s, *dof)).collect()
+    haar_levels(&tree.haar())
+        .iter()
+        .filter(|(_, dof)| *dof >= 1.0)
+        .map(|(s, dof)| chi_square::sf(*s, *dof))
+        .collect()
 }
 
 /// Where a node lies, for a sentence.

@@ -1,6 +1,8 @@
 //! The pdf's mass is the probability of a sample.
 
-use super::outcome::{Check, Effect, Judgement, Outcome, POWER, Terms, Verdict, needs_determinism, needs_functions};
+use super::outcome::{
+    Check, Effect, Judgement, Outcome, POWER, Terms, Verdict, needs_determinism, needs_functions,
+};
 use crate::bsdf::Description;
 use crate::evidence::{Evidence, Measurement};
 use crate::statistics::{binomial, normal};
@@ -64,10 +66,8 @@ impl Check for Normalization {
             samples: n,
             ..Outcome::new(Verdict::Pass, String::new())
         };
-        let figures = format!(
-            "∫pdf = {mass:.5}, P(continuous sample) = {share:.5} ({:.5} to {:.5})",
-            ends.0, ends.1
-        );
+        let figures =
+            format!("∫pdf = {mass:.5}, P(continuous sample) = {share:.5} ({:.5} to {:.5})", ends.0, ends.1);
         if low > 1.0 {
             let message = format!("{figures}: no density integrates to more than 1");
             return Outcome { verdict: Verdict::Fail, certain: true, message, ..outcome }.into();

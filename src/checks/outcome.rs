@@ -244,12 +244,7 @@ pub trait Check: Send + Sync {
 }
 
 /// `Err` with a reason if one of the needed functions is missing.
-pub fn needs_functions(
-    description: &Description,
-    eval: bool,
-    pdf: bool,
-    sample: bool,
-) -> Result<(), String> {
+pub fn needs_functions(description: &Description, eval: bool, pdf: bool, sample: bool) -> Result<(), String> {
     let has = description.has;
     for (needed, there, name) in
         [(eval, has.eval, "eval"), (pdf, has.pdf, "pdf"), (sample, has.sample, "sample")]

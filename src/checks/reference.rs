@@ -33,7 +33,8 @@ impl Check for Reference {
     fn judge(&self, evidence: &Evidence, terms: &Terms) -> Judgement {
         let Some(reference) = &evidence.reference else { return Judgement::Missing };
         if let Some(reason) = &reference.incomparable {
-            return Outcome::new(Verdict::Fail, format!("not comparable with {}: {reason}", reference.name)).into();
+            return Outcome::new(Verdict::Fail, format!("not comparable with {}: {reason}", reference.name))
+                .into();
         }
         for (tally, function) in [(&reference.eval, "eval"), (&reference.pdf, "pdf")] {
             if tally.is_broken() {

@@ -60,7 +60,12 @@ impl Check for Sensitivity {
         for v in variations {
             let (message, found, tolerance) = match &v.limit {
                 Some(Limit::Narrow { median, roughness }) => (
-                    format!("`{}` = {}: the median sample is {:.3}° off the mirror", v.parameter, v.to, median.0.to_degrees()),
+                    format!(
+                        "`{}` = {}: the median sample is {:.3}° off the mirror",
+                        v.parameter,
+                        v.to,
+                        median.0.to_degrees()
+                    ),
                     median.0,
                     NARROW * roughness,
                 ),
@@ -77,7 +82,8 @@ impl Check for Sensitivity {
             }
         }
         let limits = variations.iter().filter(|v| v.limit.is_some()).count();
-        let mut message = format!("{} parameters change something, {limits} limits are reached", largest.len());
+        let mut message =
+            format!("{} parameters change something, {limits} limits are reached", largest.len());
         if evidence.two_sided.is_some() {
             message.push_str(", front and back agree");
         }

@@ -50,7 +50,8 @@ impl Check for Support {
                 );
                 let effect = Effect::exact("samples at pdf = 0", tally.broken as f64, 0.0);
                 let worst = tally.place.clone();
-                return Outcome { effect: Some(effect), worst, ..Outcome::new(Verdict::Fail, message) }.into();
+                return Outcome { effect: Some(effect), worst, ..Outcome::new(Verdict::Fail, message) }
+                    .into();
             }
         }
         let channels = evidence.description.channels.len();
@@ -58,8 +59,7 @@ impl Check for Support {
         let lost = if mean > 0.0 { integrals.lost / mean } else { 0.0 };
         let effect = Effect::exact("share of ∫f|cos θi| where pdf = 0", lost, LOST);
         if lost > LOST {
-            let message =
-                format!("{:.3e} of ∫f|cos θi| lies where pdf = 0: sampling never finds it", lost);
+            let message = format!("{:.3e} of ∫f|cos θi| lies where pdf = 0: sampling never finds it", lost);
             return Outcome { effect: Some(effect), ..Outcome::new(Verdict::Fail, message) }.into();
         }
         // Phantom mass: nodes that expect samples and have none.
@@ -70,8 +70,7 @@ impl Check for Support {
             .max_by(|a, b| masses[*a].total_cmp(&masses[*b]));
         let n = draws.samples as f64;
         let correction = (partition.nodes() as f64).ln();
-        let ln_p =
-            empty.map_or(0.0, |v| (n * (-masses[v].min(1.0)).ln_1p() + correction).min(0.0));
+        let ln_p = empty.map_or(0.0, |v| (n * (-masses[v].min(1.0)).ln_1p() + correction).min(0.0));
         let outcome = Outcome {
             certain: false,
             effect: Some(effect),

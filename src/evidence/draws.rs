@@ -263,7 +263,8 @@ impl Draws {
             }
             let top = weight.largest.0;
             if top > heaviest && top > self.weight.largest.0 {
-                let place = Place::pair(setup.wo, wi).drawn_by(&u[k * meter.dimensions()..][..meter.dimensions()]);
+                let place =
+                    Place::pair(setup.wo, wi).drawn_by(&u[k * meter.dimensions()..][..meter.dimensions()]);
                 self.heaviest = Some(place.value("weight", top).value("sample.pdf", pdf));
             }
         }
@@ -272,9 +273,11 @@ impl Draws {
 
         if setup.mis {
             lights.clear();
-            lights.extend((0..BLOCK / PER_LIGHT).map(|_| {
-                cosine_direction(setup, [stream.next_f64(), stream.next_f64(), stream.next_f64()])
-            }));
+            lights.extend(
+                (0..BLOCK / PER_LIGHT).map(|_| {
+                    cosine_direction(setup, [stream.next_f64(), stream.next_f64(), stream.next_f64()])
+                }),
+            );
             meter.eval(setup.wo, lights, setup.transport, value)?;
             meter.pdf(setup.wo, lights, setup.transport, density)?;
             let mut mis = Sums::new(channels);
@@ -336,11 +339,14 @@ fn serial_cells(partition: &Partition) -> Vec<u8> {
             for (k, child) in children.into_iter().enumerate() {
                 depth_of_node[child] = depth_of_node[node] + 1;
                 let split = depth_of_node[child] > 1 && depth_of_node[child] <= 5;
-                cell_of_node[child] = if split { 2 * cell_of_node[node] + k as u32 } else { cell_of_node[node] };
+                cell_of_node[child] =
+                    if split { 2 * cell_of_node[node] + k as u32 } else { cell_of_node[node] };
             }
         }
     }
-    (0..partition.len()).map(|leaf| (cell_of_node[partition.leaf_node(leaf)] as usize % SERIAL) as u8).collect()
+    (0..partition.len())
+        .map(|leaf| (cell_of_node[partition.leaf_node(leaf)] as usize % SERIAL) as u8)
+        .collect()
 }
 
 /// The largest pdf at `wi` and within rounding of it, so that a sample on the

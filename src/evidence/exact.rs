@@ -117,9 +117,10 @@ impl Repeats {
                 }
                 for c in 0..width {
                     let (a, b) = (values[which][k * width + c], others[which][mirrored * width + c]);
-                    found.value.look(if a.to_bits() == b.to_bits() { 0.0 } else { relative_error(a, b, 0.0) }, || {
-                        Place::pair(setup.wo, *wi).value(name, a).value("again", b)
-                    });
+                    found.value.look(
+                        if a.to_bits() == b.to_bits() { 0.0 } else { relative_error(a, b, 0.0) },
+                        || Place::pair(setup.wo, *wi).value(name, a).value("again", b),
+                    );
                 }
             }
         }
@@ -170,10 +171,9 @@ pub fn rotations(meter: &Meter, setup: &Setup, pilot: &Pilot) -> Result<Tally, H
         if has.pdf {
             meter.pdf(wo, &turned, setup.transport, &mut turned_density)?;
         }
-        for (name, width, a, b) in [
-            ("eval", meter.channels(), &value, &turned_value),
-            ("pdf", 1, &density, &turned_density),
-        ] {
+        for (name, width, a, b) in
+            [("eval", meter.channels(), &value, &turned_value), ("pdf", 1, &density, &turned_density)]
+        {
             for (k, (a, b)) in a.iter().zip(b).enumerate() {
                 tally.look(relative_error(*a, *b, setup.floor()), || {
                     Place::pair(setup.wo, wi[k / width])

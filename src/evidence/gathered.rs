@@ -202,8 +202,7 @@ impl<'a> Gatherer<'a> {
         }
         if wants(Measurement::Variations) {
             let variants = &company.variants;
-            self.evidence.variations =
-                Some(Variation::gather(meter, setup, pilot, &self.watch, variants)?);
+            self.evidence.variations = Some(Variation::gather(meter, setup, pilot, &self.watch, variants)?);
             if setup.claims.two_sided {
                 self.evidence.two_sided = Some(two_sided(meter, setup, pilot)?);
             }

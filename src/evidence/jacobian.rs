@@ -79,8 +79,7 @@ impl Jacobian {
         };
         let oriented: Vec<f64> = points.iter().map(|p| p.slopes[i].cross(p.slopes[j]).dot(p.wi)).collect();
         let same_turn = oriented.iter().all(|o| *o > 0.0) || oriented.iter().all(|o| *o < 0.0);
-        let shares =
-            points.iter().map(|p| branch(meter, setup, p, [i, j])).collect::<Result<Vec<_>, _>>()?;
+        let shares = points.iter().map(|p| branch(meter, setup, p, [i, j])).collect::<Result<Vec<_>, _>>()?;
         let one_branch = shares.iter().all(|(share, _)| *share == 1.0);
         let one_to_one = same_turn && one_branch && !has_jump(meter, setup, [i, j])?;
         let mut tally = Tally::new(TOLERANCE);
@@ -166,8 +165,7 @@ fn has_jump(meter: &Meter, setup: &Setup, active: [usize; 2]) -> Result<bool, Ha
                 row[axis] = s;
                 row
             };
-            let places: Vec<f64> =
-                (0..LINE_POINTS).map(|k| (k as f64 + 0.5) / LINE_POINTS as f64).collect();
+            let places: Vec<f64> = (0..LINE_POINTS).map(|k| (k as f64 + 0.5) / LINE_POINTS as f64).collect();
             let u: Vec<f64> = places.iter().flat_map(|s| row(*s)).collect();
             meter.sample(setup.wo, &u, setup.transport, &mut samples)?;
             let widest = (1..LINE_POINTS)
@@ -186,7 +184,11 @@ fn has_jump(meter: &Meter, setup: &Setup, active: [usize; 2]) -> Result<bool, Ha
                     break;
                 }
                 let halves = [1, 2].map(|r| (samples.wi[r] - samples.wi[r - 1]).length());
-                if halves[0] > halves[1] { hi = middle } else { lo = middle }
+                if halves[0] > halves[1] {
+                    hi = middle
+                } else {
+                    lo = middle
+                }
                 step = halves[0].max(halves[1]);
             }
             // 24 halvings shrink a smooth step by 6e-8, a square root's by 2e-4.

@@ -2,7 +2,9 @@
 //! panics, and looks at every number that comes back.
 
 use super::tally::{Place, Tally};
-use crate::bsdf::{Cosine, Description, Direction, Lobe, Precision, Samples, Subject, SubjectError, Transport};
+use crate::bsdf::{
+    Cosine, Description, Direction, Lobe, Precision, Samples, Subject, SubjectError, Transport,
+};
 use schemars::JsonSchema;
 use serde::{Deserialize, Serialize};
 use std::cell::{Cell, RefCell};
@@ -323,8 +325,7 @@ impl<'a> Meter<'a> {
                 sanity.broken(sentence, *w, place().value("weight", *w));
             }
             if !(pdf > 0.0 && pdf < f64::INFINITY) {
-                let sentence =
-                    if pdf.is_finite() { "sample().pdf > 0" } else { "sample().pdf is finite" };
+                let sentence = if pdf.is_finite() { "sample().pdf > 0" } else { "sample().pdf is finite" };
                 sanity.broken(sentence, pdf, place().value("sample.pdf", pdf));
             }
             out.lobe[k] = Lobe::NONE;

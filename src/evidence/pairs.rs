@@ -170,8 +170,7 @@ fn exchange(meter: &Meter, setup: &Setup, wi: &[Direction]) -> Result<Vec<Exchan
     let mut all = Vec::with_capacity(wi.len());
     for (k, wi) in wi.iter().enumerate() {
         meter.eval(*wi, &[setup.wo], setup.transport, &mut backward)?;
-        let mut worst =
-            Exchange { error: 0.0, error_other: 0.0, signed: 0.0, forward: 0.0, backward: 0.0 };
+        let mut worst = Exchange { error: 0.0, error_other: 0.0, signed: 0.0, forward: 0.0, backward: 0.0 };
         for c in 0..channels {
             let (f, b) = (forward[k * channels + c], backward[c]);
             let a = f / eta_squared(setup, setup.wo);

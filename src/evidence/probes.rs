@@ -14,10 +14,7 @@ pub fn directions(setup: &Setup, pilot: &Pilot, spread: usize) -> Vec<Direction>
     let mut seed = setup.key.with("stage", "probes").block(0);
     let seed = (seed.next_u64() >> 32) as u32;
     let mut all = vec![wo, wo.mirrored(), Direction::NORMAL * 1f64.copysign(wo.z)];
-    let sides = [
-        (setup.claims.reflective, wo.z > 0.0),
-        (setup.claims.transmissive, wo.z <= 0.0),
-    ];
+    let sides = [(setup.claims.reflective, wo.z > 0.0), (setup.claims.transmissive, wo.z <= 0.0)];
     let count = sides.iter().filter(|(leaves, _)| *leaves).count().max(1);
     for (_, front) in sides.iter().filter(|(leaves, _)| *leaves) {
         for k in 0..spread / count {

@@ -328,8 +328,8 @@ fn to_split(
                 return false;
             }
             let error = &errors[k * n..];
-            let by_cell = cell_sum > NONCENTRALITY
-                && cell_term(patch.leaf as usize) * error[0] > NONCENTRALITY * share;
+            let by_cell =
+                cell_sum > NONCENTRALITY && cell_term(patch.leaf as usize) * error[0] > NONCENTRALITY * share;
             let by_total =
                 (0..steering).any(|c| total_error[c] > allowed(c) && error[c] > allowed(c) * share);
             let solid_angle = STERADIANS * patch.cell.area();
@@ -354,14 +354,17 @@ mod tests {
     use std::f64::consts::PI;
 
     fn goal(components: usize) -> Goal {
-        Goal { components, controlled: components - 1, draws: 1 << 20, mass: 1e-6, value: 1e-6, evaluations: 1 << 20 }
+        Goal {
+            components,
+            controlled: components - 1,
+            draws: 1 << 20,
+            mass: 1e-6,
+            value: 1e-6,
+            evaluations: 1 << 20,
+        }
     }
 
-    fn run(
-        pilot: Vec<Point>,
-        markers: &[Marker],
-        f: impl Fn(Direction) -> f64,
-    ) -> LeafIntegrals {
+    fn run(pilot: Vec<Point>, markers: &[Marker], f: impl Fn(Direction) -> f64) -> LeafIntegrals {
         let partition = Partition::build(Chart::new(0.0), pilot.clone(), 1024);
         integrate(&partition, &pilot, markers, &goal(1), |wi, out| {
             for (wi, out) in wi.iter().zip(out) {

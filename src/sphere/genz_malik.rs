@@ -17,13 +17,8 @@ pub struct Rule {
 // Weights at n = 2: (12824 − 9120n + 400n²)/19683, 980/6561,
 // (1820 − 400n)/19683, 200/19683 and 6859/19683/2ⁿ; embedded
 // (729 − 950n + 50n²)/729, 245/486, (265 − 100n)/1458, 25/729.
-const W7: [f64; 5] = [
-    -3816.0 / 19683.0,
-    980.0 / 6561.0,
-    1020.0 / 19683.0,
-    200.0 / 19683.0,
-    6859.0 / 19683.0 / 4.0,
-];
+const W7: [f64; 5] =
+    [-3816.0 / 19683.0, 980.0 / 6561.0, 1020.0 / 19683.0, 200.0 / 19683.0, 6859.0 / 19683.0 / 4.0];
 const W5: [f64; 4] = [-971.0 / 729.0, 245.0 / 486.0, 65.0 / 1458.0, 25.0 / 729.0];
 
 /// λ2² / λ3² = (9/70)/(9/10), which makes the fourth difference of a
@@ -63,13 +58,8 @@ impl Rule {
     #[inline]
     pub fn apply(&self, node: impl Fn(usize) -> f64) -> (f64, f64) {
         let sum = |range: [usize; 4]| range.into_iter().map(&node).sum::<f64>();
-        let sums = [
-            node(0),
-            sum([1, 2, 5, 6]),
-            sum([3, 4, 7, 8]),
-            sum([9, 10, 11, 12]),
-            sum([13, 14, 15, 16]),
-        ];
+        let sums =
+            [node(0), sum([1, 2, 5, 6]), sum([3, 4, 7, 8]), sum([9, 10, 11, 12]), sum([13, 14, 15, 16])];
         let high: f64 = W7.iter().zip(sums).map(|(w, s)| w * s).sum();
         let low: f64 = W5.iter().zip(sums).map(|(w, s)| w * s).sum();
         (high, (high - low).abs())

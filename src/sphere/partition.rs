@@ -54,10 +54,7 @@ impl Cell {
 
     /// The point at `s`, `t` in [0,1] of its sides.
     pub fn at(&self, s: f64, t: f64) -> Point {
-        [
-            self.lo[0] + s * (self.hi[0] - self.lo[0]),
-            self.lo[1] + t * (self.hi[1] - self.lo[1]),
-        ]
+        [self.lo[0] + s * (self.hi[0] - self.lo[0]), self.lo[1] + t * (self.hi[1] - self.lo[1])]
     }
 
     /// Whether it holds the point (lower edges included).
@@ -154,9 +151,9 @@ impl Partition {
             return;
         }
         let extent = |axis: usize| {
-            let (lo, hi) = points.iter().fold((f64::INFINITY, f64::NEG_INFINITY), |(lo, hi), p| {
-                (lo.min(p[axis]), hi.max(p[axis]))
-            });
+            let (lo, hi) = points
+                .iter()
+                .fold((f64::INFINITY, f64::NEG_INFINITY), |(lo, hi), p| (lo.min(p[axis]), hi.max(p[axis])));
             hi - lo
         };
         let wide = usize::from(extent(1) > extent(0));

@@ -1,0 +1,88 @@
+//! What running a plan gives, and what is told on the way.
+
+use crate::checks::{Outcome, Verdict};
+use crate::evidence::Evidence;
+use crate::registry::Parameters;
+use crate::suite::Case;
+use std::sync::Arc;
+
+/// One look of a check at draws: the last of the first attempt, or of its
+/// confirmation.
+#[derive(Clone, Debug, PartialEq)]
+pub struct Attempt {
+    /// Names the random numbers: the suite's seed, and the stage.
+    pub seed: String,
+    /// Draws.
+    pub samples: u64,
+    /// ln of the probability of what was seen, were the error within tolerance.
+    pub ln_p: f64,
+}
+
+/// A check's last word on a case.
+#[derive(Clone, Debug, PartialEq)]
+pub struct Finding {
+    /// The check's id.
+    pub check: &'static str,
+    /// What it said; its verdict is `Waived` where a waiver turned a failure.
+    pub outcome: Outcome,
+    /// Looks of statistical checks: one, or two where a suspicion was followed.
+    pub attempts: Vec<Attempt>,
+    /// The reason of the waiver.
+    pub waived_because: Option<String>,
+}
+
+/// Everything about one case.
+#[derive(Clone)]
+pub struct CaseResult {
+    /// Number of the case in the plan.
+    pub index: usize,
+    /// The case.
+    pub case: Arc<Case>,
+    /// One finding a check, in the order of [`checks::all`](crate::checks::all).
+    pub findings: Vec<Finding>,
+    /// What was measured; `None` where the case was not begun or did not return.
+    pub evidence: Option<Evidence>,
+    /// Wall time in seconds; never part of what must be reproducible.
+    pub seconds: f64,
+}
+
+impl CaseResult {
+    /// The worst verdict (error, fail, inconclusive, warn, waived, pass, skipped).
+    pub fn worst(&self) -> Verdict {
+        self.findings.iter().map(|f| f.outcome.verdict).max().unwrap_or(Verdict::Skipped)
+    }
+
+    /// The subject's parameters.
+    pub fn parameters(&self) -> &Parameters {
+        &self.case.parameters
+    }
+}
+
+/// What an engine tells while it runs.
+pub enum Event<'a> {
+    /// The run begins with so many cases on so many threads.
+    Started {
+        /// Cases.
+        cases: usize,
+        /// Threads.
+        threads: usize,
+    },
+    /// A case begins.
+    CaseStarted(&'a Case),
+    /// A case is done.
+    CaseDone(&'a CaseResult),
+}
+
+/// The results of a plan, in the plan's order.
+pub struct Results {
+    /// One result a case.
+    pub cases: Vec<CaseResult>,
+    /// The false-alarm share of each statistical test.
+    pub share: f64,
+    /// Number of statistical tests that shares were dealt to.
+    pub tests: usize,
+    /// Why not every case was run to its end, if so.
+    pub partial: Option<String>,
+    /// Wall time in seconds.
+    pub seconds: f64,
+}

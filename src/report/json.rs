@@ -1,0 +1,167 @@
+//! report.json: the one source of every other output.
+
+use crate::bsdf::Claims;
+use crate::checks::{Effect, Verdict};
+use crate::evidence::{Evaluations, Figure, Place};
+use crate::registry::Parameters;
+use schemars::JsonSchema;
+use serde::{Deserialize, Serialize};
+
+/// The version of this format; readers refuse a larger one.
+pub const SCHEMA_VERSION: u32 = 1;
+
+/// A report.
+#[derive(Clone, Debug, PartialEq, Serialize, Deserialize, JsonSchema)]
+#[schemars(title = "gonio report")]
+pub struct Report {
+    /// Version of this format.
+    pub schema_version: u32,
+    /// Version of gonio.
+    pub gonio: String,
+    /// Name of the suite.
+    pub suite: String,
+    /// Seed of all random numbers.
+    pub seed: u64,
+    /// Probability that a run of correct subjects shows any failure.
+    pub false_alarm: f64,
+    /// When the run began, in UTC (RFC 3339).
+    pub started: String,
+    /// How long it took.
+    pub duration_s: f64,
+    /// Where it ran.
+    pub machine: Machine,
+    /// Why not every case was run to its end; absent in a complete report.
+    #[serde(default, skip_serializing_if = "Option::is_none")]
+    pub partial: Option<String>,
+    /// Counts of verdicts.
+    pub summary: Summary,
+    /// One entry a case and check.
+    pub results: Vec<CheckResult>,
+    /// What is wrong with failing subjects.
+    pub diagnoses: Vec<Diagnosis>,
+}
+
+/// Where a run took place.
+#[derive(Clone, Debug, PartialEq, Serialize, Deserialize, JsonSchema)]
+pub struct Machine {
+    /// Operating system.
+    pub os: String,
+    /// Processor architecture.
+    pub arch: String,
+    /// Processors available.
+    pub cores: usize,
+}
+
+/// Counts of verdicts over all results.
+#[derive(Clone, Debug, Default, PartialEq, Eq, Serialize, Deserialize, JsonSchema)]
+pub struct Summary {
+    /// pass
+    pub passed: usize,
+    /// fail
+    pub failed: usize,
+    /// warn
+    pub warned: usize,
+    /// inconclusive
+    pub inconclusive: usize,
+    /// skipped
+    pub skipped: usize,
+    /// error
+    pub errors: usize,
+    /// waived
+    pub waived: usize,
+}
+
+/// A check's result on one case.
+#[derive(Clone, Debug, PartialEq, Serialize, Deserialize, JsonSchema)]
+pub struct CheckResult {
+    /// What was measured.
+    pub subject: SubjectId,
+    /// Id of the check.
+    pub check: String,
+    /// The given direction.
+    pub wo: Option<WoAngles>,
+    /// The verdict.
+    pub verdict: Verdict,
+    /// How large the error is.
+    pub effect: Option<Effect>,
+    /// Probability of what was seen were the error within tolerance.
+    pub p_value: Option<Figure>,
+    /// Its decimal logarithm, which does not underflow.
+    pub log10_p: Option<Figure>,
+    /// The check fails below this probability.
+    pub threshold: Option<Figure>,
+    /// Looks: the first, and its confirmation.
+    pub attempts: Vec<AttemptRow>,
+    /// Name of the channel where the error is largest.
+    pub channel: Option<String>,
+    /// Draws.
+    pub samples: u64,
+    /// Directions evaluated for the whole case.
+    pub evaluations: Evaluations,
+    /// Smallest error that would have been found with probability 0.999.
+    pub detection_limit: Option<Figure>,
+    /// One sentence.
+    pub message: String,
+    /// Why it was skipped or could not decide.
+    pub reason: Option<String>,
+    /// Where it is worst.
+    pub worst: Option<Place>,
+    /// What to type to get this case again.
+    pub command: String,
+    /// File of the case's evidence, from the report's folder.
+    pub evidence: Option<String>,
+    /// File of the case's picture, from the report's folder.
+    pub plot: Option<String>,
+    /// Why the suite accepts the failure.
+    pub waived_because: Option<String>,
+}
+
+/// A subject in a report.
+#[derive(Clone, Debug, PartialEq, Serialize, Deserialize, JsonSchema)]
+pub struct SubjectId {
+    /// How it is written: NAME:KEY=VALUE,…
+    pub name: String,
+    /// All its parameters.
+    pub parameters: Parameters,
+    /// The claims in force.
+    pub claims: Claims,
+}
+
+/// A direction in degrees.
+#[derive(Clone, Copy, Debug, PartialEq, Serialize, Deserialize, JsonSchema)]
+pub struct WoAngles {
+    /// From the normal, over 90 on the back side.
+    pub theta_deg: f64,
+    /// From the tangent.
+    pub phi_deg: f64,
+}
+
+/// A look at draws.
+#[derive(Clone, Debug, PartialEq, Serialize, Deserialize, JsonSchema)]
+pub struct AttemptRow {
+    /// Names the random numbers.
+    pub seed: String,
+    /// Draws.
+    pub samples: u64,
+    /// Decimal logarithm of the probability of what was seen.
+    pub log10_p: Figure,
+}
+
+/// What is wrong with a subject.
+#[derive(Clone, Debug, PartialEq, Serialize, Deserialize, JsonSchema)]
+pub struct Diagnosis {
+    /// Which subject.
+    pub subject: String,
+    /// Slug of the cause.
+    pub cause: String,
+    /// One sentence.
+    pub statement: String,
+    /// What mends it.
+    pub repair: String,
+    /// Probability of what was seen after the repair.
+    pub p_after_repair: Figure,
+    /// The second-best explanation.
+    pub runner_up: Option<String>,
+    /// What speaks for it.
+    pub evidence: Vec<String>,
+}
