@@ -16,7 +16,11 @@ pub(super) fn flux(evidence: &Evidence, farthest: bool) -> Option<(usize, f64, f
     let front = evidence.wo.z > 0.0;
     let factor = |front_i: bool| claims.flux_factor(front, front_i, evidence.transport);
     let channels = evidence.description.channels.len();
-    let discrete = &evidence.draws.first()?.discrete;
+    let discrete = match evidence.draws.first() {
+        Some(draws) => &draws.discrete[..],
+        None if evidence.description.has.sample => return None,
+        None => &[],
+    };
     let each = (0..channels).map(|c| {
         let mut flux = 0.0;
         for leaf in 0..partition.len() {

@@ -19,7 +19,7 @@ impl Check for Sanity {
     }
 
     fn needs(&self) -> &'static [Measurement] {
-        &[Measurement::Corners]
+        &[Measurement::Corners, Measurement::Integrals]
     }
 
     fn applies(&self, _: &Description) -> Result<(), String> {
@@ -27,6 +27,9 @@ impl Check for Sanity {
     }
 
     fn judge(&self, evidence: &Evidence, _: &Terms) -> Judgement {
+        if evidence.corners.is_none() {
+            return Judgement::Missing;
+        }
         if evidence.looks_unimplemented() {
             let message = "not implemented: every sample() was no sample, and pdf() is 0 everywhere";
             return Outcome::new(Verdict::Fail, message).into();

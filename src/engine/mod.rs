@@ -1,6 +1,9 @@
 //! Runs a plan: parallel over cases, deterministic, bounded in time, and able
 //! to stop at any moment with what it has.
 
+mod case;
 mod results;
+mod run;
 
 pub use results::{Attempt, CaseResult, Event, Finding, Results};
+pub use run::{Options, run, run_here};

@@ -10,7 +10,7 @@ use super::samples::{Pilot, SampleIdentities};
 use super::setup::Setup;
 use super::tally::Tally;
 use super::variations::{Comparison, Variant, Variation, two_sided};
-use crate::bsdf::{Claims, Cosine, Description, Direction, RandomNumbers, Subject, Transport};
+use crate::bsdf::{Claims, Cosine, Description, Direction, RandomNumbers, Subject, SubjectError, Transport};
 use crate::sphere::{Chart, Partition, Point};
 use serde::{Deserialize, Serialize};
 use std::sync::Arc;
@@ -66,6 +66,8 @@ pub struct Evidence {
     pub cosine_found: Option<Cosine>,
     /// What was found of every number that came back.
     pub sanity: Sanity,
+    /// Rows of calls at hostile inputs.
+    pub corners: Option<u64>,
     /// Identities of samples.
     pub samples: Option<SampleIdentities>,
     /// Exchanged directions.
@@ -90,9 +92,9 @@ pub struct Evidence {
     pub reference: Option<Comparison>,
     /// Directions evaluated.
     pub evaluations: Evaluations,
-    /// Why the measurement ended early.
+    /// What could not be measured, and why.
     #[serde(skip)]
-    pub halt: Option<Halt>,
+    pub halts: Vec<(Measurement, Halt)>,
 }
 
 /// What a case measures besides its subject.
@@ -123,6 +125,7 @@ impl<'a> Gatherer<'a> {
             transport: setup.transport,
             cosine_found: None,
             sanity: Sanity::default(),
+            corners: None,
             samples: None,
             pairs: None,
             repeats: None,
@@ -135,7 +138,7 @@ impl<'a> Gatherer<'a> {
             draws: Vec::new(),
             reference: None,
             evaluations: Evaluations::default(),
-            halt: None,
+            halts: Vec::new(),
         };
         Self { meter, setup, watch, pilot: Pilot::default(), evidence }
     }
@@ -150,23 +153,58 @@ impl<'a> Gatherer<'a> {
         self.evidence
     }
 
-    /// Measures all that is asked for except the draws. Where the subject
-    /// fails, what was measured before stays.
+    /// Measures all that is asked for except the draws, `draws` of which will be
+    /// compared with the integrals. Where the subject fails, the other
+    /// measurements go on, unless it is out of time.
     pub fn prepare(&mut self, asked: &[Measurement], company: &Company, draws: u64) {
-        if let Err(halt) = self.try_prepare(asked, company, draws) {
-            self.evidence.halt = Some(halt);
+        use Measurement as M;
+        let has = self.meter.description.has;
+        // The pilot is always drawn: partitions and probes stand on it.
+        let order = [M::Samples, M::Pairs, M::Corners, M::Repeats, M::Rotations, M::Jacobian, M::Variations];
+        for step in order {
+            if step == M::Corners {
+                self.settle_cosine();
+            }
+            let wanted = asked.contains(&step) || (step == M::Samples && has.sample);
+            if wanted && let Err(halt) = self.measure(step, company) {
+                self.halted(step, halt);
+            }
+        }
+        if (asked.contains(&M::Integrals) || asked.contains(&M::Draws))
+            && !self.is_over()
+            && let Err(halt) = self.integrate(draws)
+        {
+            self.halted(M::Integrals, halt);
+        }
+        if let (true, false, Some((name, other))) =
+            (asked.contains(&M::Reference), self.is_over(), &company.reference)
+            && let Err(halt) = self.compare(name, &**other, draws)
+        {
+            self.halted(M::Reference, halt);
         }
         self.account();
     }
 
     /// Draws on to `samples` in this attempt (0 the first, 1 the confirmation).
     pub fn draw(&mut self, attempt: usize, samples: u64) {
-        if self.evidence.halt.is_none()
+        if !self.is_over()
             && let Err(halt) = self.try_draw(attempt, samples)
         {
-            self.evidence.halt = Some(halt);
+            self.halted(Measurement::Draws, halt);
         }
         self.account();
+    }
+
+    /// Whether nothing more can be measured: out of time, broken, or stopped.
+    pub fn is_over(&self) -> bool {
+        let survivable = |halt: &Halt| {
+            matches!(halt, Halt::Subject(SubjectError::Panicked { .. } | SubjectError::WrongLength { .. }))
+        };
+        self.evidence.halts.iter().any(|(step, halt)| *step == Measurement::Draws || !survivable(halt))
+    }
+
+    fn halted(&mut self, step: Measurement, halt: Halt) {
+        self.evidence.halts.push((step, halt));
     }
 
     fn account(&mut self) {
@@ -174,44 +212,34 @@ impl<'a> Gatherer<'a> {
         self.evidence.evaluations = self.meter.evaluations();
     }
 
-    fn try_prepare(&mut self, asked: &[Measurement], company: &Company, draws: u64) -> Result<(), Halt> {
-        let wants = |m: Measurement| asked.contains(&m);
-        let (meter, setup) = (&self.meter, &self.setup);
-        let has = meter.description.has;
-        if has.sample {
-            let (identities, pilot) = SampleIdentities::gather(meter, setup)?;
-            self.pilot = pilot;
-            self.evidence.samples = Some(identities);
+    fn measure(&mut self, step: Measurement, company: &Company) -> Result<(), Halt> {
+        if self.is_over() {
+            return Ok(());
         }
-        if has.eval && wants(Measurement::Pairs) {
-            self.evidence.pairs = Some(Pairs::gather(meter, setup, &self.pilot)?);
-        }
-        self.settle_cosine();
         let (meter, setup, pilot) = (&self.meter, &self.setup, &self.pilot);
-        if wants(Measurement::Corners) {
-            corners(meter, setup)?;
-        }
-        if wants(Measurement::Repeats) {
-            self.evidence.repeats = Some(Repeats::gather(meter, setup, pilot)?);
-        }
-        if wants(Measurement::Rotations) {
-            self.evidence.rotations = Some(rotations(meter, setup, pilot)?);
-        }
-        if wants(Measurement::Jacobian) && has.sample && has.pdf {
-            self.evidence.jacobian = Some(Jacobian::gather(meter, setup)?);
-        }
-        if wants(Measurement::Variations) {
-            let variants = &company.variants;
-            self.evidence.variations = Some(Variation::gather(meter, setup, pilot, &self.watch, variants)?);
-            if setup.claims.two_sided {
-                self.evidence.two_sided = Some(two_sided(meter, setup, pilot)?);
+        let has = meter.description.has;
+        let evidence = &mut self.evidence;
+        match step {
+            Measurement::Samples if has.sample => {
+                let (identities, pilot) = SampleIdentities::gather(meter, setup)?;
+                evidence.samples = Some(identities);
+                self.pilot = pilot;
             }
-        }
-        if wants(Measurement::Integrals) || wants(Measurement::Draws) {
-            self.integrate(draws)?;
-        }
-        if let (true, Some((name, other))) = (wants(Measurement::Reference), &company.reference) {
-            self.compare(name, &**other, draws)?;
+            Measurement::Pairs if has.eval => evidence.pairs = Some(Pairs::gather(meter, setup, pilot)?),
+            Measurement::Corners => evidence.corners = Some(corners(meter, setup)?),
+            Measurement::Repeats => evidence.repeats = Some(Repeats::gather(meter, setup, pilot)?),
+            Measurement::Rotations => evidence.rotations = Some(rotations(meter, setup, pilot)?),
+            Measurement::Jacobian if has.sample && has.pdf => {
+                evidence.jacobian = Some(Jacobian::gather(meter, setup)?);
+            }
+            Measurement::Variations => {
+                let variants = &company.variants;
+                evidence.variations = Some(Variation::gather(meter, setup, pilot, &self.watch, variants)?);
+                if setup.claims.two_sided {
+                    evidence.two_sided = Some(two_sided(meter, setup, pilot)?);
+                }
+            }
+            _ => {}
         }
         Ok(())
     }
