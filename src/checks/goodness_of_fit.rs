@@ -108,7 +108,7 @@ fn region(partition: &Partition, node: usize) -> String {
     format!(
         "around θ = {:.1}°, φ = {:.0}°",
         centre.theta().to_degrees(),
-        centre.phi().to_degrees().rem_euclid(360.0)
+        centre.phi().to_degrees().rem_euclid(360.0).round().abs()
     )
 }
 
@@ -209,9 +209,9 @@ pub(super) fn against(
             let wi = partition.chart().to_direction(cell.at(0.5, 0.5));
             Place::pair(evidence.wo, wi).value("σ", h.z)
         });
-        let split = if shape_p < terms.ln_tail { "shape too" } else { "shape passes: a factor of wo alone" };
+        let strict = format!("at ε = 0, p = {} raw and {} for the shape alone", power(raw_p), power(shape_p));
         let message = format!(
-            "samples are off pdf by {} RMS ({} to {}) on {:.0} cells; {split}; {}",
+            "samples are off pdf by {} RMS ({} to {}) on {:.0} cells; {}; {strict}",
             percent(own_effect.0),
             percent(own_effect.1),
             percent(own_effect.2),
@@ -272,6 +272,15 @@ fn guard(tree: &Pooled, n: u64, terms: &Terms) -> (f64, usize) {
 /// The probability of even smaller sums than seen at the finest level.
 fn chi_square_lower(levels: &[(f64, f64)]) -> f64 {
     levels.last().map_or(1.0, |(x2, dof)| noncentral::cdf(*x2, *dof, 0.0))
+}
+
+/// As people read small probabilities.
+fn power(ln_p: f64) -> String {
+    if ln_p > -7.0 {
+        format!("{:.3}", ln_p.exp())
+    } else {
+        format!("10^{:.0}", ln_p / std::f64::consts::LN_10)
+    }
 }
 
 /// As people read small ratios.

@@ -8,6 +8,10 @@ use crate::evidence::{Evidence, Measurement, Place, SMALLEST_PEAK};
 /// support and rounding leave less.
 const LOST: f64 = 1e-9;
 
+/// Where samples are rarer than pdf says by more than this factor there is
+/// phantom mass; a pdf that is off by less is off, but not in its support.
+const PHANTOM: f64 = 0.1;
+
 /// Nothing is sampled where pdf is 0 (not even within rounding of wi); no share
 /// of ∫f|cos θi| lies where pdf = 0; no region has pdf and never a sample.
 pub struct Support;
@@ -70,7 +74,7 @@ impl Check for Support {
             .max_by(|a, b| masses[*a].total_cmp(&masses[*b]));
         let n = draws.samples as f64;
         let correction = (partition.nodes() as f64).ln();
-        let ln_p = empty.map_or(0.0, |v| (n * (-masses[v].min(1.0)).ln_1p() + correction).min(0.0));
+        let ln_p = empty.map_or(0.0, |v| (n * (-PHANTOM * masses[v].min(1.0)).ln_1p() + correction).min(0.0));
         let outcome = Outcome {
             certain: false,
             effect: Some(effect),
@@ -96,7 +100,7 @@ impl Check for Support {
             "no sample where pdf = 0; {lost:.1e} of ∫f|cos θi| outside of the support; peaks of {SMALLEST_PEAK:.1e} sr cannot hide"
         );
         // Phantom mass that n draws would have shown.
-        let limit = (-terms.ln_tail + correction) / n;
+        let limit = (-terms.ln_tail + correction) / (PHANTOM * n);
         terms.settle(Outcome { message, detection_limit: Some(limit), ..outcome })
     }
 }

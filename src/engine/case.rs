@@ -4,7 +4,7 @@
 use super::results::{Attempt, CaseResult, Finding};
 use crate::bsdf::{Description, Precision, SubjectError};
 use crate::checks::{self, Check, Judgement, Outcome, Terms, Verdict};
-use crate::evidence::{BLOCK, Evidence, Gatherer, Halt, Measurement, Meter, Setup, Watch};
+use crate::evidence::{BLOCK, Company, Evidence, Gatherer, Halt, Measurement, Meter, Setup, Watch};
 use crate::statistics::budget;
 use crate::statistics::streams::StreamKey;
 use crate::suite::Case;
@@ -77,7 +77,13 @@ struct Open {
 }
 
 /// Runs a case. `share` is what each of its statistical tests may spend.
-pub fn run_case(index: usize, case: &Arc<Case>, seed: u64, share: f64, watch: &Arc<Watch>) -> CaseResult {
+pub fn run_case<'a>(
+    index: usize,
+    case: &Arc<Case<'a>>,
+    seed: u64,
+    share: f64,
+    watch: &Arc<Watch>,
+) -> CaseResult<'a> {
     let start = Instant::now();
     let mut findings = Vec::new();
     let evidence = match description(case) {
@@ -101,7 +107,7 @@ pub fn run_case(index: usize, case: &Arc<Case>, seed: u64, share: f64, watch: &A
 }
 
 /// Findings for a case that was not run.
-pub fn not_run(index: usize, case: &Arc<Case>, outcome: &Outcome) -> CaseResult {
+pub fn not_run<'a>(index: usize, case: &Arc<Case<'a>>, outcome: &Outcome) -> CaseResult<'a> {
     let findings = selected(case).into_iter().map(|c| finding(c, outcome.clone(), Vec::new())).collect();
     CaseResult { index, case: case.clone(), findings, evidence: None, seconds: 0.0 }
 }
@@ -115,7 +121,7 @@ struct Run<'a> {
     gatherer: Gatherer<'a>,
     open: Vec<Open>,
     skipped: Vec<Finding>,
-    company: &'a crate::evidence::Company,
+    company: &'a Company<'a>,
     seed: u64,
     /// What each attempt of a test may spend.
     attempt: f64,
@@ -124,7 +130,7 @@ struct Run<'a> {
 }
 
 impl<'a> Run<'a> {
-    fn new(case: &'a Case, seed: u64, share: f64, description: Description, watch: &Arc<Watch>) -> Self {
+    fn new(case: &'a Case<'a>, seed: u64, share: f64, description: Description, watch: &Arc<Watch>) -> Self {
         let mut open = Vec::new();
         let mut skipped = Vec::new();
         for check in selected(case) {

@@ -33,11 +33,11 @@ pub struct Finding {
 
 /// Everything about one case.
 #[derive(Clone)]
-pub struct CaseResult {
+pub struct CaseResult<'a> {
     /// Number of the case in the plan.
     pub index: usize,
     /// The case.
-    pub case: Arc<Case>,
+    pub case: Arc<Case<'a>>,
     /// One finding a check, in the order of [`checks::all`](crate::checks::all).
     pub findings: Vec<Finding>,
     /// What was measured; `None` where the case was not begun or did not return.
@@ -46,7 +46,7 @@ pub struct CaseResult {
     pub seconds: f64,
 }
 
-impl CaseResult {
+impl CaseResult<'_> {
     /// The worst verdict (error, fail, inconclusive, warn, waived, pass, skipped).
     pub fn worst(&self) -> Verdict {
         self.findings.iter().map(|f| f.outcome.verdict).max().unwrap_or(Verdict::Skipped)
@@ -59,7 +59,7 @@ impl CaseResult {
 }
 
 /// What an engine tells while it runs.
-pub enum Event<'a> {
+pub enum Event<'e, 'a> {
     /// The run begins with so many cases on so many threads.
     Started {
         /// Cases.
@@ -68,15 +68,15 @@ pub enum Event<'a> {
         threads: usize,
     },
     /// A case begins.
-    CaseStarted(&'a Case),
+    CaseStarted(&'e Case<'a>),
     /// A case is done.
-    CaseDone(&'a CaseResult),
+    CaseDone(&'e CaseResult<'a>),
 }
 
 /// The results of a plan, in the plan's order.
-pub struct Results {
+pub struct Results<'a> {
     /// One result a case.
-    pub cases: Vec<CaseResult>,
+    pub cases: Vec<CaseResult<'a>>,
     /// The false-alarm share of each statistical test.
     pub share: f64,
     /// Number of statistical tests that shares were dealt to.

@@ -35,12 +35,12 @@ const GRACE: Duration = Duration::from_secs(1);
 /// What workers tell the run.
 enum Message {
     Started(usize, Arc<Watch>),
-    Done(Box<CaseResult>),
+    Done(Box<CaseResult<'static>>),
 }
 
 /// What workers share.
 struct Shared {
-    cases: Vec<Arc<Case>>,
+    cases: Vec<Arc<Case<'static>>>,
     queue: Mutex<VecDeque<usize>>,
     stop: Arc<AtomicBool>,
     seed: u64,
@@ -49,7 +49,7 @@ struct Shared {
 
 /// Runs a plan. Results come in the plan's order and are the same bits for any
 /// number of threads. `observe` is called on this thread only.
-pub fn run(plan: &Plan, options: &Options, observe: &mut dyn FnMut(&Event)) -> Results {
+pub fn run(plan: &Plan<'static>, options: &Options, observe: &mut dyn FnMut(&Event)) -> Results<'static> {
     let start = Instant::now();
     let tests: usize = plan.cases.iter().map(|c| statistical_tests(c)).sum();
     let share = plan.share.unwrap_or_else(|| Budget { total: plan.false_alarm }.share(tests));
@@ -70,7 +70,7 @@ pub fn run(plan: &Plan, options: &Options, observe: &mut dyn FnMut(&Event)) -> R
     // Threads stuck in a call are replaced by pools of one.
     let mut pools = vec![pool];
     let mut running: HashMap<usize, Arc<Watch>> = HashMap::new();
-    let mut done: Vec<Option<CaseResult>> = plan.cases.iter().map(|_| None).collect();
+    let mut done: Vec<Option<CaseResult<'static>>> = plan.cases.iter().map(|_| None).collect();
     let mut open = plan.cases.len();
     while open > 0 {
         if options.deadline.is_some_and(|d| start.elapsed() > d) {
@@ -119,7 +119,7 @@ pub fn run(plan: &Plan, options: &Options, observe: &mut dyn FnMut(&Event)) -> R
 }
 
 /// Runs the cases one after the other on this thread, as unit tests want it.
-pub fn run_here(plan: &Plan, options: &Options) -> Results {
+pub fn run_here<'a>(plan: &Plan<'a>, options: &Options) -> Results<'a> {
     let start = Instant::now();
     let tests: usize = plan.cases.iter().map(|c| statistical_tests(c)).sum();
     let share = plan.share.unwrap_or_else(|| Budget { total: plan.false_alarm }.share(tests));
@@ -179,9 +179,9 @@ fn spawn_worker(pool: &rayon::ThreadPool, shared: &Arc<Shared>, sender: &Sender<
 }
 
 /// Cases whose call does not return.
-fn stuck(cases: &[Arc<Case>], running: &HashMap<usize, Arc<Watch>>) -> Vec<CaseResult> {
+fn stuck(cases: &[Arc<Case<'static>>], running: &HashMap<usize, Arc<Watch>>) -> Vec<CaseResult<'static>> {
     let late = |watch: &Watch| watch.in_call().is_some_and(|t| t > watch.limit() + GRACE);
-    let mut stuck: Vec<CaseResult> = running
+    let mut stuck: Vec<CaseResult<'static>> = running
         .iter()
         .filter(|(_, watch)| late(watch))
         .map(|(index, watch)| {
@@ -197,7 +197,7 @@ fn stuck(cases: &[Arc<Case>], running: &HashMap<usize, Arc<Watch>>) -> Vec<CaseR
 }
 
 /// After a stop: cases that nobody took yet. Returns how many.
-fn skip_the_rest(shared: &Shared, done: &mut [Option<CaseResult>]) -> usize {
+fn skip_the_rest(shared: &Shared, done: &mut [Option<CaseResult<'static>>]) -> usize {
     let Ok(mut queue) = shared.queue.lock() else { return 0 };
     let mut count = 0;
     for index in queue.drain(..) {

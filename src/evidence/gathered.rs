@@ -99,11 +99,11 @@ pub struct Evidence {
 
 /// What a case measures besides its subject.
 #[derive(Clone, Default)]
-pub struct Company {
+pub struct Company<'a> {
     /// The same model with other parameters.
-    pub variants: Vec<Variant>,
+    pub variants: Vec<Variant<'a>>,
     /// Another subject to compare with, and how it is written.
-    pub reference: Option<(String, Arc<dyn Subject>)>,
+    pub reference: Option<(String, Arc<dyn Subject + 'a>)>,
 }
 
 /// Gathers the evidence of one case; keeps what later looks need.

@@ -40,6 +40,24 @@ impl Place {
     }
 }
 
+impl std::fmt::Display for Place {
+    fn fmt(&self, f: &mut std::fmt::Formatter<'_>) -> std::fmt::Result {
+        let angles =
+            |d: Direction| format!("θ {:.3}°, φ {:.2}°", d.theta().to_degrees(), d.phi().to_degrees());
+        write!(f, "wo ({})", angles(self.wo))?;
+        if let Some(wi) = self.wi {
+            write!(f, ", wi ({})", angles(wi))?;
+        }
+        if !self.u.is_empty() {
+            write!(f, ", u {:?}", self.u)?;
+        }
+        for (name, value) in &self.values {
+            write!(f, ", {name} = {:.6e}", value.0)?;
+        }
+        Ok(())
+    }
+}
+
 /// How often an identity was looked at and broken, and the worst place.
 #[derive(Clone, Debug, Default, PartialEq, Serialize, Deserialize)]
 pub struct Tally {

@@ -14,7 +14,7 @@ use std::sync::Arc;
 
 /// The same model with one parameter changed.
 #[derive(Clone)]
-pub struct Variant {
+pub struct Variant<'a> {
     /// Which parameter.
     pub parameter: String,
     /// Its value in the case.
@@ -24,7 +24,7 @@ pub struct Variant {
     /// At `to`, this limit must be reached.
     pub limit: Option<Role>,
     /// The changed subject.
-    pub subject: Arc<dyn Subject>,
+    pub subject: Arc<dyn Subject + 'a>,
 }
 
 /// What a changed parameter did.

@@ -66,8 +66,8 @@ impl Rule {
     }
 
     /// The axis along which either function bends more, by fourth differences
-    /// scaled to the function's own size.
-    pub fn rougher_axis(&self, a: impl Fn(usize) -> f64, b: impl Fn(usize) -> f64) -> u8 {
+    /// scaled to the function's own size; `None` where neither bends.
+    pub fn rougher_axis(&self, a: impl Fn(usize) -> f64, b: impl Fn(usize) -> f64) -> Option<u8> {
         let bends = |f: &dyn Fn(usize) -> f64| {
             let difference = |k: usize| {
                 let second = |i: usize| f(i) + f(i + 1) - 2.0 * f(0);
@@ -77,7 +77,8 @@ impl Rule {
             [difference(1) / scale, difference(5) / scale]
         };
         let (a, b) = (bends(&a), bends(&b));
-        u8::from(a[1].max(b[1]) > a[0].max(b[0]))
+        let along = [a[0].max(b[0]), a[1].max(b[1])];
+        (along != [0.0, 0.0]).then(|| u8::from(along[1] > along[0]))
     }
 }
 
@@ -111,7 +112,8 @@ mod tests {
     fn tells_the_rougher_axis() {
         let rule = Rule::new();
         let bent = |axis: usize| move |k: usize| (5.0 * Rule::new().points()[k][axis]).sin();
-        assert_eq!(rule.rougher_axis(bent(0), |_| 1.0), 0);
-        assert_eq!(rule.rougher_axis(|_| 1.0, bent(1)), 1);
+        assert_eq!(rule.rougher_axis(bent(0), |_| 1.0), Some(0));
+        assert_eq!(rule.rougher_axis(|_| 1.0, bent(1)), Some(1));
+        assert_eq!(rule.rougher_axis(|_| 1.0, |_| 0.0), None);
     }
 }

@@ -34,6 +34,11 @@ impl Cell {
         (self.hi[0] - self.lo[0]) * (self.hi[1] - self.lo[1])
     }
 
+    /// Its side along `axis`.
+    pub fn width(&self, axis: usize) -> f64 {
+        self.hi[axis] - self.lo[axis]
+    }
+
     /// Whether it lies on the front hemisphere.
     pub fn is_front(&self) -> bool {
         self.lo[0] < 1.0
@@ -243,7 +248,7 @@ impl Partition {
             (0..self.len()).filter(|leaf| marked[*leaf]).map(|leaf| self.leaf_node(leaf)).collect();
         for node in nodes {
             let cell = self.cells[node];
-            let room = (0..2).all(|k| cell.hi[k] - cell.lo[k] > 16.0 * NARROWEST);
+            let room = (0..2).all(|k| cell.width(k) > 16.0 * NARROWEST);
             if room {
                 self.split_evenly(node, EMPTY_DEPTH);
             }

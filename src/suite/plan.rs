@@ -95,13 +95,13 @@ impl Default for Settings {
 
 /// One subject at one direction.
 #[derive(Clone)]
-pub struct Case {
+pub struct Case<'a> {
     /// The suite's entry that it belongs to: a row of the matrix.
     pub group: String,
     /// How the subject is written; with seed and wo it names the random numbers.
     pub spelling: String,
     /// The subject.
-    pub subject: Arc<dyn Subject>,
+    pub subject: Arc<dyn Subject + 'a>,
     /// Its parameters.
     pub parameters: Parameters,
     /// Polar angle of wo in degrees, over 90 on the back side.
@@ -115,7 +115,7 @@ pub struct Case {
     /// Accepted failures.
     pub waivers: Vec<Waiver>,
     /// Variants and reference.
-    pub company: Company,
+    pub company: Company<'a>,
     /// How the reference is written, for the command that reproduces the case.
     pub reference: Option<String>,
     /// Ids of the checks to run; all where empty.
@@ -124,7 +124,7 @@ pub struct Case {
     pub settings: Settings,
 }
 
-impl Case {
+impl Case<'_> {
     /// The given direction.
     pub fn wo(&self) -> Direction {
         Direction::from_angles(self.theta_deg.to_radians(), self.phi_deg.to_radians())
@@ -142,7 +142,7 @@ impl Case {
 
 /// The cases to run and what they share.
 #[derive(Clone)]
-pub struct Plan {
+pub struct Plan<'a> {
     /// The suite's name.
     pub suite: String,
     /// Seed of all random numbers.
@@ -153,5 +153,5 @@ pub struct Plan {
     /// where a case is run alone on the terms of its suite.
     pub share: Option<f64>,
     /// The cases.
-    pub cases: Vec<Arc<Case>>,
+    pub cases: Vec<Arc<Case<'a>>>,
 }

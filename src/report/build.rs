@@ -1,0 +1,103 @@
+//! Results of a run to a report.
+
+use super::json::{AttemptRow, CheckResult, Machine, Report, SCHEMA_VERSION, SubjectId, Summary, WoAngles};
+use crate::checks::Verdict;
+use crate::engine::{CaseResult, Finding, Results};
+use crate::evidence::Figure;
+use crate::suite::Plan;
+use std::f64::consts::LN_10;
+
+/// Where the parts of a report lie, and how its cases are reproduced.
+pub struct Files<'a> {
+    /// For a case and a check, what to type.
+    pub command: &'a dyn Fn(&CaseResult, &str) -> String,
+    /// The file of a case's evidence, from the report's folder.
+    pub evidence: &'a dyn Fn(&CaseResult) -> Option<String>,
+    /// The file of a case's picture.
+    pub plot: &'a dyn Fn(&CaseResult) -> Option<String>,
+}
+
+impl Summary {
+    fn count(results: &[CheckResult]) -> Self {
+        let count = |verdict| results.iter().filter(|r| r.verdict == verdict).count();
+        Self {
+            passed: count(Verdict::Pass),
+            failed: count(Verdict::Fail),
+            warned: count(Verdict::Warn),
+            inconclusive: count(Verdict::Inconclusive),
+            skipped: count(Verdict::Skipped),
+            errors: count(Verdict::Error),
+            waived: count(Verdict::Waived),
+        }
+    }
+}
+
+impl Report {
+    /// The report of a run that began at `started` (RFC 3339, UTC).
+    pub fn new(plan: &Plan, results: &Results, started: String, files: &Files) -> Self {
+        let rows: Vec<CheckResult> =
+            results.cases.iter().flat_map(|case| case.findings.iter().map(|f| row(case, f, files))).collect();
+        Self {
+            schema_version: SCHEMA_VERSION,
+            gonio: env!("CARGO_PKG_VERSION").into(),
+            suite: plan.suite.clone(),
+            seed: plan.seed,
+            false_alarm: plan.false_alarm,
+            started,
+            duration_s: results.seconds,
+            machine: Machine {
+                os: std::env::consts::OS.into(),
+                arch: std::env::consts::ARCH.into(),
+                cores: std::thread::available_parallelism().map_or(1, usize::from),
+            },
+            partial: results.partial.clone(),
+            summary: Summary::count(&rows),
+            results: rows,
+            diagnoses: Vec::new(),
+        }
+    }
+
+    /// The same without what differs from run to run: times, and the machine.
+    pub fn timeless(mut self) -> Self {
+        self.started = String::new();
+        self.duration_s = 0.0;
+        self.machine = Machine { os: String::new(), arch: String::new(), cores: 0 };
+        self
+    }
+}
+
+fn row(case: &CaseResult, finding: &Finding, files: &Files) -> CheckResult {
+    let outcome = &finding.outcome;
+    let figure = |v: f64| Figure(v);
+    let description = case.evidence.as_ref().map(|e| &e.description);
+    CheckResult {
+        subject: SubjectId {
+            name: case.case.spelling.clone(),
+            parameters: case.case.parameters.clone(),
+            claims: description.map_or_else(|| case.case.claims.over(Default::default()), |d| d.claims),
+        },
+        check: finding.check.into(),
+        wo: Some(WoAngles { theta_deg: case.case.theta_deg, phi_deg: case.case.phi_deg }),
+        verdict: outcome.verdict,
+        effect: outcome.effect.clone(),
+        p_value: outcome.ln_p.map(|p| figure(p.exp())),
+        log10_p: outcome.ln_p.map(|p| figure(p / LN_10)),
+        threshold: outcome.ln_threshold.map(|p| figure(p.exp())),
+        attempts: finding
+            .attempts
+            .iter()
+            .map(|a| AttemptRow { seed: a.seed.clone(), samples: a.samples, log10_p: figure(a.ln_p / LN_10) })
+            .collect(),
+        channel: outcome.channel.and_then(|c| description.and_then(|d| d.channels.get(c).cloned())),
+        samples: outcome.samples,
+        evaluations: case.evidence.as_ref().map(|e| e.evaluations).unwrap_or_default(),
+        detection_limit: outcome.detection_limit.map(figure),
+        message: outcome.message.clone(),
+        reason: outcome.reason.clone(),
+        worst: outcome.worst.clone(),
+        command: (files.command)(case, finding.check),
+        evidence: (files.evidence)(case),
+        plot: (files.plot)(case),
+        waived_because: finding.waived_because.clone(),
+    }
+}
