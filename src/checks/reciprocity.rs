@@ -20,7 +20,7 @@ impl Check for Reciprocity {
     }
 
     fn needs(&self) -> &'static [Measurement] {
-        &[Measurement::Samples, Measurement::Pairs]
+        &[Measurement::Pairs]
     }
 
     fn applies(&self, description: &Description) -> Result<(), String> {

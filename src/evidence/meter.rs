@@ -281,8 +281,9 @@ impl<'a> Meter<'a> {
         Ok(())
     }
 
-    /// One draw for each row of `u`. Draws with a number that is not what it
-    /// must be are turned to no sample, and told by [`sanity`](Self::sanity).
+    /// One draw for each row of `u`. What is not what it must be is told by
+    /// [`sanity`](Self::sanity): a weight counts as 0 then, and a draw without a
+    /// direction or a density as no sample.
     pub fn sample(
         &self,
         wo: Direction,
@@ -316,20 +317,24 @@ impl<'a> Meter<'a> {
                 continue;
             }
             let place = || Place::pair(wo, wi).drawn_by(&u[k * self.dimensions()..][..self.dimensions()]);
-            if !(length <= 2.0 * tolerance) {
-                sanity.broken("|wi| = 1", wi.length() - 1.0, place().value("|wi|", wi.length()));
-            }
             if let Some(w) = weights.iter().find(|w| !(**w >= 0.0 && **w < f64::INFINITY)) {
                 let sentence =
                     if w.is_finite() { "sample().weight ≥ 0" } else { "sample().weight is finite" };
                 sanity.broken(sentence, *w, place().value("weight", *w));
+                out.weight[k * out.channels..(k + 1) * out.channels].fill(0.0);
+            }
+            if !(length <= 2.0 * tolerance) {
+                sanity.broken("|wi| = 1", wi.length() - 1.0, place().value("|wi|", wi.length()));
+                out.lobe[k] = Lobe::NONE;
             }
             if !(pdf > 0.0 && pdf < f64::INFINITY) {
                 let sentence = if pdf.is_finite() { "sample().pdf > 0" } else { "sample().pdf is finite" };
                 sanity.broken(sentence, pdf, place().value("sample.pdf", pdf));
+                out.lobe[k] = Lobe::NONE;
             }
-            out.lobe[k] = Lobe::NONE;
-            out.weight[k * out.channels..(k + 1) * out.channels].fill(0.0);
+            if !out.lobe[k].is_valid() {
+                out.weight[k * out.channels..(k + 1) * out.channels].fill(0.0);
+            }
         }
         Ok(())
     }

@@ -1,7 +1,7 @@
 //! A GGX reflector written for the tests, with one bug at a time.
 #![allow(dead_code)]
 
-use gonio::bsdf::{Bsdf, Description, Direction, Lobe, Sample, Spectrum, Transport};
+use gonio::bsdf::{Bsdf, Description, Direction, Lobe, RandomNumbers, Sample, Spectrum, Transport};
 use std::f64::consts::PI;
 
 /// What is wrong with it.
@@ -60,6 +60,8 @@ pub enum Bug {
     PhantomBack,
     /// sample() returns the flipped direction for this share of draws.
     Stray(f64),
+    /// It draws its own random numbers, and every second sample repeats the last.
+    Repeating,
 }
 
 /// Isotropic GGX with visible-normal sampling (Heitz 2018), height-correlated
@@ -68,11 +70,12 @@ pub struct Ggx {
     pub alpha: f64,
     pub bug: Bug,
     pub calls: std::sync::atomic::AtomicU64,
+    last: std::sync::Mutex<Vec<f64>>,
 }
 
 impl Ggx {
     pub fn new(alpha: f64, bug: Bug) -> Self {
-        Self { alpha, bug, calls: Default::default() }
+        Self { alpha, bug, calls: Default::default(), last: Default::default() }
     }
 
     fn d(&self, h: Direction, alpha: f64) -> f64 {
@@ -127,7 +130,12 @@ impl Ggx {
 impl Bsdf for Ggx {
     fn describe(&self) -> Description {
         let dimensions = if self.bug == Bug::Redraw { 12 } else { 3 };
-        Description::new("ad-hoc-ggx").dimensions(dimensions).claims(|c| c.isotropic = true)
+        Description::new("ad-hoc-ggx").dimensions(dimensions).claims(|c| {
+            c.isotropic = true;
+            if self.bug == Bug::Repeating {
+                c.rng = RandomNumbers::Internal;
+            }
+        })
     }
 
     fn eval(&self, wo: Direction, wi: Direction, _: Transport) -> Spectrum {
@@ -180,6 +188,15 @@ impl Bsdf for Ggx {
             let h = self.visible_normal(wo, u);
             if self.bug == Bug::HalfVector { h } else { wo.reflected(h) }
         };
+        let mut own = u.to_vec();
+        if self.bug == Bug::Repeating {
+            let mut last = self.last.lock().unwrap();
+            if calls % 2 == 1 && last.len() == u.len() {
+                own = last.clone();
+            }
+            *last = own.clone();
+        }
+        let u = &own[..];
         let mut wi = draw(u);
         if self.bug == Bug::Redraw {
             for k in 1..6 {
@@ -190,8 +207,9 @@ impl Bsdf for Ggx {
         }
         match self.bug {
             Bug::MirroredShare(share) if u[2] < share => {
-                let plane = Direction::new(wo.x, wo.y, 0.0).normalized();
-                let across = Direction::new(-plane.y, plane.x, 0.0);
+                let across = Direction::new(-wo.y, wo.x, 0.0);
+                let length = across.length();
+                let across = if length > 0.0 { across * (1.0 / length) } else { Direction::new(0.0, 1.0, 0.0) };
                 let off = wi.dot(across).abs();
                 wi = wi - across * (wi.dot(across)) + across * off;
             }
