@@ -7,6 +7,7 @@ mod dielectric;
 pub mod fresnel;
 mod lambert;
 mod metal;
+pub mod microfacet;
 mod oren_nayar;
 
 pub use conductor::{Conductor, ConductorFresnel};
@@ -17,5 +18,11 @@ pub use oren_nayar::OrenNayar;
 
 /// Every built-in model, in the order in which `gonio list` shows them.
 pub fn all() -> Vec<Model> {
-    vec![lambert::model(), oren_nayar::model(), dielectric::model(), conductor::model()]
+    vec![
+        lambert::model(),
+        oren_nayar::model(),
+        dielectric::model(),
+        conductor::model(),
+        microfacet::torrance_sparrow::model(),
+    ]
 }
