@@ -1,0 +1,18 @@
+//! Rough surfaces as many small facets: distributions of normals and the
+//! models made of them, one concept a file.
+
+mod beckmann;
+mod chebyshev;
+mod distribution;
+mod gaussian;
+mod ggx;
+mod roughness;
+pub(super) mod torrance_sparrow;
+mod v_cavity;
+
+pub use beckmann::Beckmann;
+pub use distribution::Distribution;
+pub use gaussian::Gaussian;
+pub use ggx::Ggx;
+pub use roughness::Roughness;
+pub use torrance_sparrow::{Fresnel, Masking, NormalSampling, TorranceSparrow};

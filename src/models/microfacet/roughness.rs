@@ -1,0 +1,42 @@
+//! Roughness along both tangents.
+
+use crate::bsdf::Direction;
+
+/// Roughness α along the tangent and the bitangent, each in [1e-4, 1]; what it
+/// means is up to the distribution (a slope for GGX and Beckmann, an angle in
+/// radians for Torrance and Sparrow's Gaussian).
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub struct Roughness {
+    /// Along +x.
+    pub x: f64,
+    /// Along +y.
+    pub y: f64,
+}
+
+impl Roughness {
+    /// The same `alpha` in all azimuths.
+    pub fn isotropic(alpha: f64) -> Self {
+        Self { x: alpha, y: alpha }
+    }
+
+    /// Whether both are equal.
+    pub fn is_isotropic(self) -> bool {
+        self.x == self.y
+    }
+
+    /// (αx x, αy y, z): takes a view direction to the configuration of unit
+    /// roughness, and a normal of unit roughness to the surface (E. Heitz,
+    /// *Understanding the masking-shadowing function*, JCGT 2014, §5.3). Not
+    /// of unit length.
+    #[inline]
+    pub fn scale(self, d: Direction) -> Direction {
+        Direction::new(self.x * d.x, self.y * d.y, d.z)
+    }
+
+    /// (mx/αx)² + (my/αy)².
+    #[inline]
+    pub fn scaled_square(self, m: Direction) -> f64 {
+        let (x, y) = (m.x / self.x, m.y / self.y);
+        x * x + y * y
+    }
+}
