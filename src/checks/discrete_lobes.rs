@@ -137,11 +137,15 @@ fn probabilities(evidence: &Evidence, terms: &Terms) -> Judgement {
     let lobe = &draws.discrete[worst.1];
     let ends = binomial::proportion_interval(lobe.count, n, 0.025);
     let share = lobe.count as f64 / n as f64;
-    let ratio = |v: f64| v / lobe.probability - 1.0;
+    let p = lobe.probability.min(1.0);
+    // √D of the two cells {this lobe, all else}: D = (q−p)²/p + (q−p)²/(1−p).
+    let scale = (p * (1.0 - p)).sqrt().max(1.0 / n as f64);
+    let off = |v: f64| (v - lobe.probability) / scale;
+    let slack = terms.mean_tolerance * p / scale;
     let effect = Effect::interval(
-        "frequency/probability − 1",
-        (ratio(share), ratio(ends.0), ratio(ends.1)),
-        terms.mean_tolerance,
+        "(frequency − P)/√(P(1−P))",
+        (off(share), off(ends.0), off(ends.1)),
+        slack,
     );
     let message = format!(
         "{} discrete lobes; `{}` has probability {:.5} and came in {share:.5} of {n} draws",
@@ -149,9 +153,8 @@ fn probabilities(evidence: &Evidence, terms: &Terms) -> Judgement {
         lobe.lobe,
         lobe.probability
     );
-    let p = lobe.probability.min(1.0);
     let deviations = normal::quantile(terms.ln_tail - correction) + normal::quantile((1.0 - POWER).ln());
-    let limit = terms.mean_tolerance + deviations * ((1.0 - p) / (p * n as f64)).sqrt();
+    let limit = slack + deviations / (n as f64).sqrt();
     let outcome = Outcome {
         certain: false,
         effect: Some(effect),

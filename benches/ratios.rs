@@ -1,0 +1,128 @@
+//! Ratios that say what gonio costs: `cargo bench --bench ratios`. Machines are
+//! noisy, so each figure is a median of ratios measured in turn in one run, or
+//! a count of operations.
+
+use gonio::bsdf::{Bsdf, Direction, Samples, Subject, Transport};
+use gonio::engine::{Options, run, run_here};
+use gonio::evidence::Evaluations;
+use gonio::models::microfacet::{Distribution, Fresnel, Masking, NormalSampling, Roughness, TorranceSparrow};
+use gonio::statistics::streams::StreamKey;
+use gonio::suite::{Case, Plan, Settings};
+use std::sync::Arc;
+use std::time::Instant;
+
+fn ggx(alpha: f64) -> TorranceSparrow {
+    let distribution = Distribution::ggx(Roughness::isotropic(alpha));
+    TorranceSparrow::new(distribution, Masking::Smith, Fresnel::None, NormalSampling::Visible)
+        .expect("GGX has visible normals")
+}
+
+fn plan(cases: impl IntoIterator<Item = (f64, f64)>, samples: u64, checks: &[&str]) -> Plan<'static> {
+    let cases = cases.into_iter().map(|(alpha, theta)| {
+        Arc::new(Case {
+            group: "ggx".into(),
+            spelling: format!("ggx-{alpha}"),
+            subject: Arc::new(ggx(alpha)),
+            parameters: Default::default(),
+            theta_deg: theta,
+            phi_deg: 17.0,
+            transport: Transport::Radiance,
+            claims: Default::default(),
+            waivers: Vec::new(),
+            company: Default::default(),
+            reference: None,
+            checks: checks.iter().map(|c| (*c).to_string()).collect(),
+            settings: Settings { samples, ..Settings::default() },
+        })
+    });
+    Plan { suite: "bench".into(), seed: 1, false_alarm: 1e-6, share: None, cases: cases.collect() }
+}
+
+fn median(mut values: Vec<f64>) -> f64 {
+    values.sort_by(f64::total_cmp);
+    values[values.len() / 2]
+}
+
+/// The same functions as often as the harness called them, and nothing else.
+fn raw(subject: &TorranceSparrow, wo: Direction, calls: Evaluations, u: &[f64]) -> f64 {
+    let start = Instant::now();
+    let mut sum = 0.0;
+    let mut samples = Samples::default();
+    let mut value = vec![0.0; 4096];
+    let mut drawn = 0;
+    while drawn < calls.sample {
+        samples.clear(1);
+        Subject::sample(subject, wo, u, Transport::Radiance, &mut samples).expect("it samples");
+        drawn += samples.len() as u64;
+    }
+    let wi = samples.wi.clone();
+    for _ in 0..calls.eval / wi.len() as u64 {
+        Subject::eval(subject, wo, &wi, Transport::Radiance, &mut value[..wi.len()]).expect("it evaluates");
+        sum += value[0];
+    }
+    for _ in 0..calls.pdf / wi.len() as u64 {
+        Subject::pdf(subject, wo, &wi, Transport::Radiance, &mut value[..wi.len()]).expect("it evaluates");
+        sum += value[0];
+    }
+    std::hint::black_box(sum);
+    start.elapsed().as_secs_f64()
+}
+
+fn overhead() {
+    for alpha in [0.5, 0.1, 0.01] {
+        let plan = plan([(alpha, 60.0)], 1 << 20, &[]);
+        let subject = ggx(alpha);
+        let wo = plan.cases[0].wo();
+        let dimensions = Bsdf::describe(&subject).dimensions;
+        let mut u = vec![0.0; 4096 * dimensions];
+        StreamKey::new(1).block(0).fill(false, &mut u);
+        let mut ratios = Vec::new();
+        let mut calls = Evaluations::default();
+        for _ in 0..9 {
+            let start = Instant::now();
+            let results = run_here(&plan, &Options::default());
+            let harness = start.elapsed().as_secs_f64();
+            calls = results.cases[0].evidence.as_ref().expect("it ran").evaluations;
+            ratios.push(harness / raw(&subject, wo, calls, &u));
+        }
+        println!(
+            "harness / raw calls, GGX alpha {alpha}, 2^20 draws, all checks ({} sample, {} eval, {} pdf): {:.2}",
+            calls.sample,
+            calls.eval,
+            calls.pdf,
+            median(ratios)
+        );
+    }
+}
+
+fn parallel() {
+    let plan = plan((0..24).map(|k| (0.1, f64::from(k) * 3.0)), 1 << 19, &[]);
+    let time = |threads| {
+        let start = Instant::now();
+        run(&plan, &Options { threads: Some(threads), ..Options::default() }, &mut |_| {});
+        start.elapsed().as_secs_f64()
+    };
+    let ratios = (0..5).map(|_| time(1) / (2.0 * time(2))).collect();
+    println!("parallel efficiency on 2 threads, 24 cases: {:.2}", median(ratios));
+}
+
+fn integration() {
+    println!("evaluations of pdf, and error of its mass, to integrate a GGX pdf:");
+    for alpha in [1.0, 0.3, 0.1, 0.03, 0.01, 0.003, 0.001] {
+        let results =
+            run_here(&plan([0.0, 30.0, 60.0, 75.0, 85.0, 89.0].map(|t| (alpha, t)), 1 << 18, &["normalization"]), &Options::default());
+        let cells: Vec<String> = results
+            .cases
+            .iter()
+            .filter_map(|c| c.evidence.as_ref()?.integrals.as_ref())
+            .map(|i| format!("{:>7} {:.0e}", i.evaluations, i.mass().1))
+            .collect();
+        println!("  alpha {alpha:<6} {}", cells.join("  "));
+    }
+}
+
+fn main() {
+    overhead();
+    parallel();
+    integration();
+}
