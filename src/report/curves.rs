@@ -49,6 +49,13 @@ fn points(cases: &[&Evidence], channel: usize) -> Vec<Point> {
         })
         .filter(|p| p.found.is_finite() && p.error.is_finite() && p.expected.is_finite())
         .collect();
+    // Azimuth means nothing on the normal: such a case belongs to the first line.
+    let on_normal = |p: &Point| p.theta < 1e-6 || p.theta > 180.0 - 1e-6;
+    let first = points.iter().filter(|p| !on_normal(p)).map(|p| p.series).min();
+    for point in points.iter_mut().filter(|p| on_normal(p)) {
+        let azimuth = first.map_or(point.series.0, |series| series.0);
+        point.series.0 = azimuth;
+    }
     points.sort_by(|a, b| a.series.cmp(&b.series).then(a.theta.total_cmp(&b.theta)));
     points
 }
@@ -164,7 +171,7 @@ pub fn p_values(values: &[f64]) -> Option<String> {
             figure.line(&outline, Pen::new(LINES[0], 2.0));
         }
     }
-    axes.draw(&mut figure, &[0.0, 0.2, 0.4, 0.6, 0.8, 1.0], 5.0, "p, at no error at all", "cases");
+    axes.draw(&mut figure, &[0.0, 0.2, 0.4, 0.6, 0.8, 1.0], 5.0, "p-value", "cases");
     let ends = [axes.place(0.0, level), axes.place(1.0, level)];
     figure.line(&ends, Pen::new(INK, 1.6).dashed());
     let small = Type::new(Anchor::Start).size(15.0).colour(SOFT_INK);

@@ -16,7 +16,7 @@ const COLUMNS: [f64; 3] = [184.0, 498.0, 812.0];
 const WIDTH: f64 = 968.0;
 
 /// Height of a row of discs, and where the first begins.
-const ROW: f64 = 390.0;
+const ROW: f64 = 408.0;
 const TOP: f64 = 84.0;
 
 /// The colour scale of densities ends at this part of the largest.
@@ -266,7 +266,7 @@ fn draw_row(
         disc.mark_cross(figure, evidence.wo.mirrored());
     }
     for (k, text) in notes(partition, leaves, &window, front).iter().enumerate() {
-        let y = top + 2.0 * RADIUS + 72.0 + 21.0 * k as f64;
+        let y = top + 2.0 * RADIUS + 70.0 + 20.0 * k as f64;
         figure.text((20.0, y), text, Type::new(Anchor::Start).size(15.0));
     }
 }
@@ -325,16 +325,12 @@ fn notes(partition: &Partition, leaves: &Leaves, window: &Window, front: bool) -
             percent(shown.1, all.1)
         ));
     }
-    let mut largest = Vec::new();
-    for (place, slot) in ["largest difference", "outside of the window"].into_iter().zip(worst) {
+    for (place, slot) in ["largest difference", "largest outside of the window"].into_iter().zip(worst) {
         if let Some((z, d)) = slot {
             let z = format!("{z:+.1}").replace('-', "−");
             let (theta, phi) = (d.theta().to_degrees(), azimuth(d));
-            largest.push(format!("{place} {z} σ, in the cell around θ = {theta:.1}°, φ = {phi:.0}°"));
+            lines.push(format!("{place}: {z} σ, in the cell around θ = {theta:.1}°, φ = {phi:.0}°"));
         }
-    }
-    if !largest.is_empty() {
-        lines.push(largest.join(";  "));
     }
     lines
 }
@@ -457,7 +453,7 @@ mod tests {
     #[test]
     fn an_error_outside_of_the_window_is_told() {
         let (_, hidden) = gallery().into_iter().find(|(name, _)| *name == "hidden").unwrap();
-        assert!(picture(&hidden, Caption::default()).unwrap().contains("outside of the window +"));
+        assert!(picture(&hidden, Caption::default()).unwrap().contains("outside of the window: +"));
     }
 
     #[test]

@@ -216,11 +216,23 @@ impl Disc {
             } else {
                 run.last().copied()
             };
-            if let (true, Some((x, y))) = (labelled, end) {
+            // The lower edge is where the numbers of θ are.
+            let lowest = opposite.1 - 32.0;
+            if let (true, Some((x, y))) = (labelled, end.filter(|p| p.1 < lowest)) {
                 let text = format!("φ {}", degrees(phi.rem_euclid(360.0), turn_step));
                 let x = x.clamp(corner.0 + 4.0, opposite.0 - 60.0);
-                figure.text((x, (y - 11.0).clamp(corner.1 + 12.0, opposite.1 - 12.0)), &text, label);
+                figure.text((x, (y - 11.0).max(corner.1 + 12.0)), &text, label);
             }
+        }
+        let horizon: Vec<Point> = (0..=STEPS)
+            .map(|i| {
+                let turn = heading + around * (2.0 * i as f64 / STEPS as f64 - 1.0);
+                [0.999_999 * turn.cos(), 0.999_999 * turn.sin()]
+            })
+            .collect();
+        for run in horizon.split(|p| !self.window.holds(*p)) {
+            let points: Vec<At> = run.iter().map(|p| self.place(*p)).collect();
+            figure.line(&points, Pen::new(INK, 1.6));
         }
         figure.frame(corner, opposite, Pen::new(INK, 1.6));
     }

@@ -38,6 +38,8 @@ pub fn picture(evidence: &Evidence) -> Option<String> {
     let tally = &pairs.reciprocity;
     let verdict = if tally.is_broken() {
         format!("asymmetric at {:.3} % of {} places", 100.0 * tally.share(), tally.checked)
+    } else if tally.checked == 0 {
+        "no place was looked at".into()
     } else {
         format!("within {:.0e} at all {} places", tally.tolerance, tally.checked).replace('-', "−")
     };
@@ -55,13 +57,14 @@ pub fn picture(evidence: &Evidence) -> Option<String> {
     for (k, front) in sides.iter().enumerate() {
         let at = (LEFT + APART * k as f64, 276.0);
         let disc = Disc { chart, front: *front, window: Window::WHOLE, at, radius: RADIUS };
-        disc.graticule(&mut figure, true);
         for (d, signed) in dots {
             if let Some(place) = disc.direction(*d) {
                 let colour = colour(*signed, scale);
                 figure.dot(place, if signed.is_nan() { 5.0 } else { 3.6 }, colour);
             }
         }
+        // Over the dots, or its numbers are hidden.
+        disc.graticule(&mut figure, true);
         disc.mark_ring(&mut figure, evidence.wo);
         disc.mark_cross(&mut figure, evidence.wo.mirrored());
         if sides.len() > 1 {

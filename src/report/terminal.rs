@@ -1,6 +1,6 @@
 //! The summary of a report that a person wants to read first.
 
-use super::json::{CheckResult, Report};
+use super::json::{CheckResult, Diagnosis, Report};
 use super::wording::{certainty, direction, effect, probability, range, worst, wrapped};
 use crate::checks::{self, Verdict};
 use std::collections::{BTreeMap, BTreeSet};
@@ -216,16 +216,10 @@ fn blocks(text: &mut String, report: &Report, look: Look) {
     let mut diagnosed = BTreeSet::new();
     for kind in kinds.iter().take(BLOCKS) {
         line(text, "");
-        block(text, kind, look);
-        let failed = matches!(kind[0].verdict, Verdict::Fail);
-        if failed && diagnosed.insert(&kind[0].subject.name) {
-            for d in report.diagnoses.iter().filter(|d| d.subject == kind[0].subject.name) {
-                let p = probability(d.p_after_repair.0.log10());
-                let cause =
-                    format!("cause: {} [{}]; repair: {} (then p = {p})", d.statement, d.cause, d.repair);
-                indented(text, &cause, 4, look);
-            }
-        }
+        let subject = &kind[0].subject.name;
+        let told = kind[0].verdict == Verdict::Fail && diagnosed.insert(subject);
+        let causes = report.diagnoses.iter().filter(|d| told && d.subject == *subject);
+        block(text, kind, &causes.collect::<Vec<_>>(), look);
     }
     if kinds.len() > BLOCKS {
         let mut counts: BTreeMap<(Verdict, &str), usize> = BTreeMap::new();
@@ -242,7 +236,7 @@ fn blocks(text: &mut String, report: &Report, look: Look) {
     }
 }
 
-fn block(text: &mut String, kind: &[&CheckResult], look: Look) {
+fn block(text: &mut String, kind: &[&CheckResult], causes: &[&Diagnosis], look: Look) {
     let result = kind[0];
     let verdict =
         look.paint(code(result.verdict), &format!("{} {}", symbol(result.verdict), result.verdict.word()));
@@ -266,6 +260,11 @@ fn block(text: &mut String, kind: &[&CheckResult], look: Look) {
     indented(text, &result.message, 4, look);
     if let Some(reason) = result.reason.as_ref().filter(|r| **r != result.message) {
         indented(text, reason, 4, look);
+    }
+    for d in causes {
+        let p = probability(d.p_after_repair.0.log10());
+        let cause = format!("cause: {} [{}]; repair: {} (then p = {p})", d.statement, d.cause, d.repair);
+        indented(text, &cause, 4, look);
     }
     // Whole, so that it can be copied.
     line(text, &format!("    $ {}", result.command));
@@ -306,8 +305,7 @@ fn footer(text: &mut String, report: &Report, files: &[(&str, &str)], look: Look
     let mut limits: Vec<f64> = limits.filter_map(|r| r.detection_limit).map(|l| l.0).collect();
     limits.sort_by(f64::total_cmp);
     if let (Some(least), Some(most)) = (limits.first(), limits.last()) {
-        let told =
-            format!("statistical passes would have shown an error of {} or more", range(*least, *most));
+        let told = format!("statistical passes had detection limits of {}", range(*least, *most));
         indented(text, &told, 0, look);
     }
     let longest = files.iter().map(|f| f.0.chars().count()).max().unwrap_or(0);
@@ -318,7 +316,7 @@ fn footer(text: &mut String, report: &Report, files: &[(&str, &str)], look: Look
 
 #[cfg(test)]
 pub(super) mod tests {
-    use super::super::json::{AttemptRow, Diagnosis, Machine, SCHEMA_VERSION, SubjectId, Summary, WoAngles};
+    use super::super::json::{AttemptRow, Machine, SCHEMA_VERSION, SubjectId, Summary, WoAngles};
     use super::*;
     use crate::bsdf::{Claims, Direction};
     use crate::checks::Effect;
