@@ -1,7 +1,7 @@
 //! Evidence of made-up lobes, for tests of pictures.
 
 use crate::bsdf::{Description, Direction, Transport};
-use crate::evidence::{Draws, Evaluations, Evidence, Integrals, Pairs, Sanity, Tally};
+use crate::evidence::{Draws, Evaluations, Evidence, Integrals, Pairs, Place, Sanity, Tally};
 use crate::sphere::{Cell, Chart, Partition, Point};
 use crate::statistics::streams::{Stream, StreamKey};
 use std::f64::consts::TAU;
@@ -115,12 +115,16 @@ pub fn evidence(subject: &str, theta: f64, phi: f64, claimed: Lobe, sampled: Lob
         pdf,
     };
     let mut stream = key.block(2);
-    let map = (0..1024)
+    let map: Vec<(Direction, f64)> = (0..1024)
         .map(|_| {
             let d = Direction::from_angles((1.0 - stream.next_f64()).acos(), TAU * stream.next_f64());
             (d, 0.3 * (d.z - wo.z))
         })
         .collect();
+    let mut reciprocity = Tally::new(1e-9);
+    for (_, signed) in &map {
+        reciprocity.look(signed.abs(), Place::default);
+    }
     Evidence {
         subject: subject.into(),
         description: Description::new(subject).channels(["red", "green", "blue"]),
@@ -129,7 +133,7 @@ pub fn evidence(subject: &str, theta: f64, phi: f64, claimed: Lobe, sampled: Lob
         cosine_found: None,
         sanity: Sanity::default(),
         samples: None,
-        pairs: Some(Pairs { map, reciprocity: Tally::new(1e-9), ..Pairs::default() }),
+        pairs: Some(Pairs { map, reciprocity, ..Pairs::default() }),
         repeats: None,
         rotations: None,
         jacobian: None,
