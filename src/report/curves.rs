@@ -33,11 +33,17 @@ fn points(cases: &[&Evidence], channel: usize) -> Vec<Point> {
         .filter_map(|case| {
             let integrals = case.integrals.as_ref()?;
             let draws = case.draws.first().filter(|d| d.weight.count > 0)?;
-            if channel >= draws.weight.sum.len() || channel >= integrals.value_error.len() {
+            // Saved evidence may come from anywhere.
+            let sums = draws.weight.sum.len().min(draws.weight.square.len());
+            if channel >= sums.min(integrals.value_error.len()) {
                 return None;
             }
             let (found, variance) = draws.weight.moments(channel);
-            let discrete: f64 = draws.discrete.iter().map(|d| d.probability * d.weight[channel]).sum();
+            let discrete: f64 = draws
+                .discrete
+                .iter()
+                .map(|d| d.probability * d.weight.get(channel).unwrap_or(&f64::NAN))
+                .sum();
             let degrees = case.wo.phi().to_degrees();
             Some(Point {
                 theta: case.wo.theta().to_degrees(),

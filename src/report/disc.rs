@@ -3,10 +3,12 @@
 
 use super::colours::{INK, NOTHING, Rgb, SOFT_INK, UNKNOWN, diverging, sequential};
 use super::disc_frame::{Disc, Window, azimuth, cross, ring};
+use super::disc_leaves::{CLIP, Leaves, in_sight, is_met, window};
 use super::figure::{Anchor, At, Figure, Pen, TEXT, Type, shortened};
+use super::numbers::{Trim, count, power_of_ten, three_digits, two_digits};
 use crate::bsdf::{Direction, Transport};
 use crate::evidence::Evidence;
-use crate::sphere::{Partition, Point, STERADIANS};
+use crate::sphere::Partition;
 
 /// Half a disc's side in pixels.
 const RADIUS: f64 = 132.0;
@@ -25,64 +27,6 @@ const FLOOR: f64 = 1e-4;
 /// Steps of the colour scales; few enough that images stay small.
 const STEPS: u8 = 64;
 
-/// Residuals are clipped here, in standard deviations.
-const CLIP: f64 = 5.0;
-
-/// A leaf with fewer expected counts is not judged by its residual.
-const FEWEST: f64 = 5.0;
-
-/// A window holds this share of the mass, and is drawn if its half-width is
-/// below [`ZOOM_BELOW`].
-const SHARE: f64 = 0.98;
-const ZOOM_BELOW: f64 = 0.25;
-
-/// Per leaf, what is drawn.
-struct Leaves {
-    /// Samples per steradian and draw.
-    observed: Option<Vec<f64>>,
-    /// Mass per steradian.
-    expected: Option<Vec<f64>>,
-    /// (O − E)/√E; NaN where too little is expected.
-    residual: Option<Vec<f64>>,
-    /// Share of samples and of pdf.
-    shares: Vec<(f64, f64)>,
-}
-
-impl Leaves {
-    fn of(evidence: &Evidence, partition: &Partition) -> Option<Self> {
-        let integrals = evidence.integrals.as_ref()?;
-        let draws = evidence.draws.first().filter(|d| d.samples > 0);
-        let fits =
-            integrals.pdf.len() == partition.len() && draws.is_none_or(|d| d.counts.len() == partition.len());
-        if !fits {
-            return None;
-        }
-        let steradians = |leaf: usize| STERADIANS * partition.leaf_cell(leaf).area();
-        let per_leaf = |of: &dyn Fn(usize) -> f64| (0..partition.len()).map(of).collect::<Vec<f64>>();
-        let n = draws.map_or(0.0, |d| d.samples as f64);
-        let share = |leaf: usize| draws.map_or(0.0, |d| d.counts[leaf] as f64 / n);
-        let has_pdf = evidence.description.has.pdf;
-        let mass = |leaf: usize| if has_pdf { integrals.pdf[leaf].max(0.0) } else { 0.0 };
-        Some(Self {
-            observed: draws.map(|_| per_leaf(&|leaf| share(leaf) / steradians(leaf))),
-            expected: has_pdf.then(|| per_leaf(&|leaf| mass(leaf) / steradians(leaf))),
-            residual: (has_pdf && n > 0.0)
-                .then(|| per_leaf(&|leaf| residual(n * share(leaf), n * mass(leaf)))),
-            shares: (0..partition.len()).map(|leaf| (share(leaf), mass(leaf))).collect(),
-        })
-    }
-}
-
-/// Pearson's residual. Where fewer than [`FEWEST`] are expected it is NaN,
-/// unless so many came that no such expectation explains them.
-fn residual(observed: f64, expected: f64) -> f64 {
-    if expected >= FEWEST {
-        return (observed - expected) / expected.sqrt();
-    }
-    let surplus = (observed - expected) / expected.max(1.0).sqrt();
-    if surplus >= CLIP { surplus } else { f64::NAN }
-}
-
 /// What is said of a case besides its evidence.
 #[derive(Clone, Copy, Debug, Default)]
 pub struct Caption {
@@ -98,30 +42,6 @@ pub fn given(evidence: &Evidence) -> String {
     };
     let wo = evidence.wo;
     format!("θo = {:.4}°, φo = {:.4}°{mode}", Trim(wo.theta().to_degrees()), Trim(azimuth(wo)))
-}
-
-/// A number without the zeros after its last decimal.
-struct Trim(f64);
-
-impl std::fmt::Display for Trim {
-    fn fmt(&self, f: &mut std::fmt::Formatter<'_>) -> std::fmt::Result {
-        let text = format!("{:.*}", f.precision().unwrap_or(6), self.0);
-        f.write_str(text.trim_end_matches('0').trim_end_matches('.'))
-    }
-}
-
-/// A count with its thousands set apart.
-pub fn count(n: u64) -> String {
-    let digits = n.to_string();
-    let head = digits.len() % 3;
-    let mut text = digits[..head].to_string();
-    for k in (head..digits.len()).step_by(3) {
-        if !text.is_empty() {
-            text.push('\u{2009}');
-        }
-        text.push_str(&digits[k..k + 3]);
-    }
-    text
 }
 
 /// The picture of a case; `None` where no cells were counted or integrated.
@@ -156,53 +76,6 @@ pub fn picture(evidence: &Evidence, caption: Caption) -> Option<String> {
     }
     draw_scales(&mut figure, &leaves, height - 68.0, largest);
     Some(figure.finish())
-}
-
-/// Whether a hemisphere has any count or mass.
-fn is_met(partition: &Partition, leaves: &Leaves, front: bool) -> bool {
-    let side = (0..partition.len()).filter(|leaf| partition.leaf_cell(*leaf).is_front() == front);
-    side.map(|leaf| leaves.shares[leaf]).any(|(observed, expected)| observed > 0.0 || expected > 0.0)
-}
-
-/// The square that holds [`SHARE`] of a hemisphere's samples and pdf, if it is
-/// small; else the whole disc. A cell's mass is taken to lie where the cell is
-/// nearest to the middle: the outer cells of a lobe are large, and nearly empty
-/// but for their inner edge.
-fn window(partition: &Partition, leaves: &Leaves, front: bool) -> Window {
-    const PARTS: usize = 8;
-    let chart = partition.chart();
-    let mut cells: Vec<(Vec<Point>, f64)> = Vec::new();
-    for leaf in 0..partition.len() {
-        let cell = partition.leaf_cell(leaf);
-        let weight = leaves.shares[leaf].0 + leaves.shares[leaf].1;
-        if cell.is_front() == front && weight > 0.0 {
-            let part = |i: usize| i as f64 / PARTS as f64;
-            let grid = (0..(PARTS + 1) * (PARTS + 1)).map(|k| (k % (PARTS + 1), k / (PARTS + 1)));
-            let place = |(i, j)| {
-                // The corner of a front cell at the squares' seam is a back direction.
-                let [u, v] = cell.at(part(i), part(j));
-                let u = if front { u.min(1.0 - f64::EPSILON) } else { u };
-                chart.to_disc(chart.to_direction([u, v]))
-            };
-            cells.push((grid.map(place).collect(), weight));
-        }
-    }
-    let total: f64 = cells.iter().map(|c| c.1).sum();
-    let quantile = |share: f64, key: &dyn Fn(&[Point]) -> f64| {
-        let mut keys: Vec<(f64, f64)> = cells.iter().map(|(p, weight)| (key(p), *weight)).collect();
-        keys.sort_by(|a, b| a.0.total_cmp(&b.0));
-        let mut sum = 0.0;
-        let reached = keys.iter().find(|(_, weight)| {
-            sum += weight;
-            sum >= share * total
-        });
-        reached.map_or(1.0, |k| k.0)
-    };
-    let middle = PARTS / 2 * (PARTS + 2);
-    let centre = [0, 1].map(|k| quantile(0.5, &|p| p[middle][k]));
-    let distance = |p: &Point| (p[0] - centre[0]).abs().max((p[1] - centre[1]).abs());
-    let half = 1.2 * quantile(SHARE, &|p| p.iter().map(distance).fold(f64::INFINITY, f64::min));
-    if half > 0.0 && half < ZOOM_BELOW { Window { centre, half } } else { Window::WHOLE }
 }
 
 fn density_colour(density: f64, largest: f64) -> u8 {
@@ -271,26 +144,6 @@ fn draw_row(
     }
 }
 
-/// Leaves of which a part can be seen.
-fn in_sight(partition: &Partition, window: &Window, front: bool) -> Vec<bool> {
-    const GRID: usize = 128;
-    let chart = partition.chart();
-    let mut seen: Vec<bool> = (0..partition.len())
-        .map(|leaf| {
-            let middle = chart.to_direction(partition.leaf_cell(leaf).at(0.5, 0.5));
-            (middle.z > 0.0) == front && window.holds(chart.to_disc(middle))
-        })
-        .collect();
-    for k in 0..GRID * GRID {
-        let part = |i: usize| window.half * (2.0 * (i as f64 + 0.5) / GRID as f64 - 1.0);
-        let at = [window.centre[0] + part(k % GRID), window.centre[1] + part(k / GRID)];
-        if let Some(d) = chart.from_disc(at, front) {
-            seen[partition.locate_direction(d)] = true;
-        }
-    }
-    seen
-}
-
 /// What is shown of a hemisphere, and what cannot be seen in its window.
 fn notes(partition: &Partition, leaves: &Leaves, window: &Window, front: bool) -> Vec<String> {
     let seen = in_sight(partition, window, front);
@@ -333,21 +186,6 @@ fn notes(partition: &Partition, leaves: &Leaves, window: &Window, front: bool) -
         }
     }
     lines
-}
-
-/// Two digits of a factor.
-fn two_digits(factor: f64) -> f64 {
-    let unit = 10f64.powf(factor.log10().floor() - 1.0);
-    (factor / unit).round() * unit
-}
-
-/// Three digits, or all before the decimal point.
-pub fn three_digits(value: f64) -> String {
-    if !(1e-3..1e6).contains(&value.abs()) && value != 0.0 {
-        return format!("{value:.2e}").replace('-', "−");
-    }
-    let digits = (2.0 - value.abs().max(1e-3).log10().floor()).clamp(0.0, 6.0) as usize;
-    format!("{value:.digits$}").replace('-', "−")
 }
 
 /// Both colour bars and the marks' meaning.
@@ -407,32 +245,12 @@ pub fn bar(figure: &mut Figure, (x, y): At, width: f64, colours: &[Rgb]) {
     figure.frame((x, y), (x + width, y + 16.0), Pen::new(INK, 1.0));
 }
 
-/// 10ⁿ, or the number itself near 1.
-pub fn power_of_ten(power: i32) -> String {
-    match power {
-        -2 => "0.01".into(),
-        -1 => "0.1".into(),
-        0 => "1".into(),
-        1 => "10".into(),
-        2 => "100".into(),
-        _ => {
-            let superscript = |c: char| match c {
-                '-' => '⁻',
-                '1' => '¹',
-                '2' => '²',
-                '3' => '³',
-                digit => char::from_u32('⁰' as u32 + digit as u32 - '0' as u32).unwrap_or(digit),
-            };
-            format!("10{}", power.to_string().chars().map(superscript).collect::<String>())
-        }
-    }
-}
-
 /// Text is as tall as this in every picture.
 const _: () = assert!(TEXT >= 16.0, "legible at half size");
 
 #[cfg(test)]
 mod tests {
+    use super::super::disc_leaves::residual;
     use super::super::figure::{MOST_BYTES, tests::assert_well_formed};
     use super::super::synthetic::gallery;
     use super::*;
@@ -469,13 +287,6 @@ mod tests {
         assert_eq!(residual(100.0, 0.0), 100.0);
         assert_eq!(residual(110.0, 100.0), 1.0);
         assert!(residual_colour(-9.0) < residual_colour(0.0) && residual_colour(9.0) == 2 + STEPS);
-    }
-
-    #[test]
-    fn numbers_read_well() {
-        assert_eq!([7, 262_144, 1_000_000].map(count), ["7", "262\u{2009}144", "1\u{2009}000\u{2009}000"]);
-        assert_eq!([-3, 2, 14].map(power_of_ten), ["10⁻³", "100", "10¹⁴"]);
-        assert_eq!(format!("{:.4} {:.4} {:.4}", Trim(30.0), Trim(0.25), Trim(0.0)), "30 0.25 0");
     }
 
     /// Writes the gallery to the folder that GONIO_GALLERY names, to be looked at.

@@ -1,9 +1,10 @@
 //! Where exchanging wo and wi changes the value, and which way.
 
 use super::colours::{INK, Rgb, diverging};
-use super::disc::{bar, given, three_digits};
+use super::disc::{bar, given};
 use super::disc_frame::{Disc, Window, cross, ring};
 use super::figure::{Anchor, Figure, Pen, Type, shortened};
+use super::numbers::three_digits;
 use crate::bsdf::Direction;
 use crate::evidence::Evidence;
 use crate::sphere::Chart;
