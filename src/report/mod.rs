@@ -1,9 +1,33 @@
 //! Events and results to terminal, JSON and SVG.
 
 mod build;
+mod axes;
+mod colours;
+mod curves;
+mod disc;
+mod disc_frame;
+mod disc_leaves;
+mod figure;
 mod json;
+mod numbers;
+mod plots;
+mod raster;
+mod reciprocity_map;
+mod saved;
+mod schema;
+#[cfg(test)]
+mod synthetic;
+mod terminal;
+mod wording;
 
 pub use build::Files;
+pub use curves::{albedo as albedo_curve, p_values as p_value_histogram};
+pub use disc::{Caption, picture as disc_picture};
 pub use json::{
     AttemptRow, CheckResult, Diagnosis, Machine, Report, SCHEMA_VERSION, SubjectId, Summary, WoAngles,
 };
+pub use plots::{Pictured, Which, draw};
+pub use reciprocity_map::picture as reciprocity_picture;
+pub use saved::{FileError, evidence_path, read_evidence, write_evidence, write_whole};
+pub use schema::{schema, schema_text};
+pub use terminal::{Look, summary, symbol};
