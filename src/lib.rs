@@ -2,6 +2,7 @@
 
 pub mod bsdf;
 pub mod checks;
+pub mod cli;
 pub mod engine;
 pub mod evidence;
 pub mod models;
@@ -10,3 +11,5 @@ pub mod report;
 pub mod sphere;
 pub mod statistics;
 pub mod suite;
+
+pub use cli::main;

@@ -19,11 +19,10 @@ pub(super) struct Reader {
 pub fn count(text: &str) -> Result<u64, String> {
     let plain = text.replace('_', "");
     let number = match plain.split_once('^') {
-        Some((base, power)) => base
-            .parse::<u64>()
-            .ok()
-            .zip(power.parse::<u32>().ok())
-            .and_then(|(base, power)| base.checked_pow(power)),
+        Some((base, power)) => {
+            let parts = base.parse::<u64>().ok().zip(power.parse().ok());
+            parts.map(|(base, power)| base.saturating_pow(power))
+        }
         None => plain.parse::<u64>().ok(),
     };
     match number {

@@ -1,0 +1,176 @@
+//! `gonio run`, and the one place where a plan meets the engine and the report.
+
+use super::args::{Format, Measuring, Plots, Voice};
+use super::error::CliError;
+use super::exit::Exit;
+use super::output::{emit, tell};
+use super::progress::Progress;
+use super::seam;
+use crate::registry::{Registry, nearest};
+use crate::suite::{EMBEDDED, Plan, embedded, load};
+use std::path::{Path, PathBuf};
+use std::sync::Arc;
+use std::sync::atomic::{AtomicBool, Ordering};
+
+/// Arguments of `gonio run`.
+#[derive(Debug, clap::Args)]
+pub struct RunArgs {
+    /// Suite files, or names of suites that come with gonio: seed, quick, deep.
+    #[arg(value_name = "SUITE", default_value = EMBEDDED[0].name)]
+    pub suites: Vec<String>,
+    /// How to measure.
+    #[command(flatten)]
+    pub measuring: Measuring,
+}
+
+/// What to run and where it goes.
+pub struct Request {
+    /// One for each suite.
+    pub plans: Vec<Plan>,
+    /// The folder of the report.
+    pub out: Option<PathBuf>,
+    /// Threads.
+    pub threads: Option<usize>,
+    /// What comes out.
+    pub format: Format,
+    /// Which cases get a picture.
+    pub plots: Plots,
+    /// Whether unclear results fail.
+    pub strict: bool,
+}
+
+impl Request {
+    /// These plans, with what was typed.
+    pub fn new(plans: Vec<Plan>, measuring: &Measuring) -> Self {
+        Self {
+            plans,
+            out: measuring.out.clone(),
+            threads: measuring.threads.map(usize::from),
+            format: measuring.format,
+            plots: measuring.plots,
+            strict: measuring.strict,
+        }
+    }
+
+    /// The folder of a plan's report: its own where there are several.
+    fn folder(&self, plan: &Plan) -> Option<PathBuf> {
+        let out = self.out.as_ref()?;
+        Some(if self.plans.len() == 1 { out.clone() } else { out.join(file_name(&plan.suite)) })
+    }
+}
+
+/// A suite's name as one part of a path.
+fn file_name(suite: &str) -> String {
+    suite.chars().map(|c| if c.is_alphanumeric() || "-_".contains(c) { c } else { '-' }).collect()
+}
+
+impl RunArgs {
+    /// Reads and expands all suites before anything is run.
+    pub fn request(&self, registry: &Registry) -> Result<Request, CliError> {
+        let overrides = self.measuring.overrides();
+        let mut plans: Vec<Plan> = Vec::new();
+        for suite in &self.suites {
+            let (name, text) = read(suite)?;
+            let plan = load(&name, &text, registry, &overrides)?.plan;
+            if plans.iter().any(|p| file_name(&p.suite) == file_name(&plan.suite)) {
+                return Err(CliError::Usage {
+                    message: format!("two suites are called `{}`", plan.suite),
+                    help: "run them one by one, or give one of them another name = \"…\" in [suite]".into(),
+                });
+            }
+            plans.push(plan);
+        }
+        Ok(Request::new(plans, &self.measuring))
+    }
+}
+
+/// The text of a suite: a file, or one that comes with gonio.
+fn read(suite: &str) -> Result<(String, String), CliError> {
+    match (std::fs::read_to_string(suite), embedded(suite)) {
+        (Ok(text), _) => Ok((suite.into(), text)),
+        (Err(_), Some(found)) => Ok((found.name.into(), found.text.into())),
+        (Err(e), None) => {
+            let names = EMBEDDED.iter().map(|e| e.name);
+            let help = match nearest(suite, names.clone()) {
+                _ if Path::new(suite).exists() => format!("the file cannot be read: {e}"),
+                Some(n) => format!("did you mean `{n}`?"),
+                None => {
+                    let names = names.collect::<Vec<_>>().join(", ");
+                    format!("name a file that exists, or one of the suites that come with gonio: {names}")
+                }
+            };
+            Err(CliError::NoSuite { name: suite.into(), help })
+        }
+    }
+}
+
+/// Runs everything that is asked for.
+pub fn execute(request: &Request, voice: Voice) -> Result<Exit, CliError> {
+    for folder in request.plans.iter().filter_map(|p| request.folder(p)) {
+        prove_writable(&folder)?;
+    }
+    let stop = stop_on_interrupt()?;
+    let mut exit = None;
+    for plan in &request.plans {
+        let one = run(plan, request, voice, &stop)?;
+        exit = Some(exit.map_or(one, |so_far: Exit| so_far.and(one)));
+        if stop.load(Ordering::Relaxed) {
+            break;
+        }
+    }
+    Ok(exit.unwrap_or(Exit::Nothing))
+}
+
+/// Runs one plan and hands its results to the report: where the command line
+/// meets the engine.
+fn run(plan: &Plan, request: &Request, voice: Voice, stop: &Arc<AtomicBool>) -> Result<Exit, CliError> {
+    if plan.cases.is_empty() {
+        tell(&format!("suite `{}` has no case: nothing was run; add a [[subject]]", plan.suite));
+        return Ok(Exit::Nothing);
+    }
+    let progress = Progress::new(plan, voice);
+    let started = jiff::Timestamp::now().to_string();
+    let options = seam::Options { threads: request.threads, stop: stop.clone(), deadline: None };
+    let results = seam::run(plan, &options, &|event| progress.observe(event));
+    progress.finish();
+    let header = seam::Header { program: program(), started };
+    let report = seam::report(&results, plan, &header)?;
+    if let Some(folder) = request.folder(plan) {
+        seam::write(&report, &results, plan, &folder, request.plots)?;
+    }
+    if !voice.quiet {
+        seam::tell(&report, voice.colored(), voice.verbose);
+    }
+    if request.format == Format::Json {
+        let mut text = serde_json::to_string(&report).map_err(|e| CliError::Internal(e.to_string()))?;
+        text.push('\n');
+        emit(&text)?;
+    }
+    if stop.load(Ordering::Relaxed) { Ok(Exit::Interrupted) } else { Ok(Exit::of(&results, request.strict)) }
+}
+
+/// The name under which this program was called, for commands to type.
+fn program() -> String {
+    let path = std::env::args_os().next().map(PathBuf::from);
+    path.and_then(|p| Some(p.file_stem()?.to_str()?.to_string())).unwrap_or_else(|| "gonio".into())
+}
+
+/// Better to find out before an hour of measuring.
+fn prove_writable(folder: &Path) -> Result<(), CliError> {
+    let made = std::fs::create_dir_all(folder).and_then(|()| tempfile::tempfile_in(folder));
+    made.map(drop).map_err(|source| CliError::Output { path: folder.into(), source })
+}
+
+/// The first Ctrl-C ends the run with what it has, the second ends it at once.
+fn stop_on_interrupt() -> Result<Arc<AtomicBool>, CliError> {
+    let stop = Arc::new(AtomicBool::new(false));
+    let flag = stop.clone();
+    ctrlc::set_handler(move || {
+        if flag.swap(true, Ordering::Relaxed) {
+            std::process::exit(Exit::Interrupted as i32);
+        }
+        tell("stopping; what was measured is still reported (Ctrl-C again ends at once)");
+    })
+    .map_err(|e| CliError::Internal(format!("cannot watch for Ctrl-C: {e}")))?;
+    Ok(stop)
+}
