@@ -44,13 +44,13 @@ pub enum Command {
 #[derive(Clone, Copy, Debug, Default, clap::Args)]
 pub struct Voice {
     /// Colours in messages; `auto` is for terminals without NO_COLOR.
-    #[arg(long, global = true, value_enum, default_value_t, value_name = "WHEN")]
+    #[arg(long, global = true, value_enum, default_value_t, value_name = "WHEN", display_order = 900)]
     pub color: Color,
     /// Only errors.
-    #[arg(short, long, global = true, conflicts_with = "verbose")]
+    #[arg(short, long, global = true, conflicts_with = "verbose", display_order = 901)]
     pub quiet: bool,
     /// Every case as it ends.
-    #[arg(short, long, global = true)]
+    #[arg(short, long, global = true, display_order = 902)]
     pub verbose: bool,
 }
 

@@ -16,7 +16,7 @@ pub enum CliError {
     /// A name that does not exist.
     #[error("{0}")]
     #[diagnostic(help("`gonio list` shows what there is"))]
-    Registry(#[from] RegistryError),
+    Registry(RegistryError),
     /// No such suite.
     #[error("there is no suite `{name}`")]
     #[diagnostic(help("{help}"))]
@@ -36,13 +36,13 @@ pub enum CliError {
         help: String,
     },
     /// A folder that cannot be written into.
-    #[error("cannot write into {path}: {source}")]
+    #[error("cannot write into {path}: {why}")]
     #[diagnostic(help("name a folder that can be written into: --out DIR"))]
     Output {
         /// Which.
         path: PathBuf,
         /// Why.
-        source: std::io::Error,
+        why: std::io::Error,
     },
     /// Standard output cannot be written to.
     #[error("cannot write to standard output: {0}")]
@@ -66,5 +66,12 @@ impl CliError {
 impl From<SuiteError> for CliError {
     fn from(error: SuiteError) -> Self {
         Self::Suite(Box::new(error))
+    }
+}
+
+// By hand: a source would be printed below the message that it is.
+impl From<RegistryError> for CliError {
+    fn from(error: RegistryError) -> Self {
+        Self::Registry(error)
     }
 }

@@ -7,7 +7,7 @@ use super::output::{emit, tell};
 use super::progress::Progress;
 use super::seam;
 use crate::registry::{Registry, nearest};
-use crate::suite::{EMBEDDED, Plan, embedded, load};
+use crate::suite::{EMBEDDED, Expanded, Plan, embedded, load};
 use std::path::{Path, PathBuf};
 use std::sync::Arc;
 use std::sync::atomic::{AtomicBool, Ordering};
@@ -37,6 +37,8 @@ pub struct Request {
     pub plots: Plots,
     /// Whether unclear results fail.
     pub strict: bool,
+    /// Combinations of parameters that were left out since their model refuses them.
+    pub refused: usize,
 }
 
 impl Request {
@@ -49,6 +51,7 @@ impl Request {
             format: measuring.format,
             plots: measuring.plots,
             strict: measuring.strict,
+            refused: 0,
         }
     }
 
@@ -68,10 +71,11 @@ impl RunArgs {
     /// Reads and expands all suites before anything is run.
     pub fn request(&self, registry: &Registry) -> Result<Request, CliError> {
         let overrides = self.measuring.overrides();
-        let mut plans: Vec<Plan> = Vec::new();
+        let (mut plans, mut refused): (Vec<Plan>, _) = (Vec::new(), 0);
         for suite in &self.suites {
             let (name, text) = read(suite)?;
-            let plan = load(&name, &text, registry, &overrides)?.plan;
+            let Expanded { plan, refused: left_out } = load(&name, &text, registry, &overrides)?;
+            refused += left_out;
             if plans.iter().any(|p| file_name(&p.suite) == file_name(&plan.suite)) {
                 return Err(CliError::Usage {
                     message: format!("two suites are called `{}`", plan.suite),
@@ -80,7 +84,7 @@ impl RunArgs {
             }
             plans.push(plan);
         }
-        Ok(Request::new(plans, &self.measuring))
+        Ok(Request { refused, ..Request::new(plans, &self.measuring) })
     }
 }
 
@@ -108,6 +112,9 @@ fn read(suite: &str) -> Result<(String, String), CliError> {
 pub fn execute(request: &Request, voice: Voice) -> Result<Exit, CliError> {
     for folder in request.plans.iter().filter_map(|p| request.folder(p)) {
         prove_writable(&folder)?;
+    }
+    if voice.verbose && request.refused > 0 {
+        tell(&format!("left out: {} combinations that their model refuses", request.refused));
     }
     let stop = stop_on_interrupt()?;
     let mut exit = None;
@@ -158,7 +165,7 @@ fn program() -> String {
 /// Better to find out before an hour of measuring.
 fn prove_writable(folder: &Path) -> Result<(), CliError> {
     let made = std::fs::create_dir_all(folder).and_then(|()| tempfile::tempfile_in(folder));
-    made.map(drop).map_err(|source| CliError::Output { path: folder.into(), source })
+    made.map(drop).map_err(|why| CliError::Output { path: folder.into(), why })
 }
 
 /// The first Ctrl-C ends the run with what it has, the second ends it at once.
