@@ -7,6 +7,7 @@ use super::variants::variants;
 use crate::bsdf::{Claims, Subject};
 use crate::evidence::{Company, Meter};
 use crate::registry::{Kind, Model, Parameters, Registry, RegistryError, Spelling, Value, nearest};
+use std::collections::HashSet;
 use std::sync::Arc;
 
 /// More combinations of parameters than this are a slip.
@@ -31,6 +32,7 @@ pub(super) struct Combinations {
     pub all: Vec<Option<Combination>>,
     /// How many the model refused.
     pub refused: usize,
+    spellings: HashSet<String>,
 }
 
 impl Combinations {
@@ -57,7 +59,7 @@ impl Combinations {
             mistakes.push(Mistake::new(entry.model.span(), message, "too many").help(help));
             return None;
         }
-        let mut found = Self { levels, all: Vec::new(), refused: 0 };
+        let mut found = Self { levels, all: Vec::new(), refused: 0, spellings: HashSet::new() };
         let mut first_error = None;
         for row in product(&found.levels.clone()) {
             let given = values.iter().zip(&row).map(|(list, k)| list[*k].clone()).collect();
@@ -86,7 +88,7 @@ impl Combinations {
         subject: Arc<dyn Subject>,
     ) {
         let spelling = model.spell(&parameters);
-        if self.all.iter().flatten().any(|c| c.spelling == spelling) {
+        if !self.spellings.insert(spelling.clone()) {
             self.all.push(None);
             return;
         }

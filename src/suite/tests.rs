@@ -281,6 +281,7 @@ fn embedded_suites_expand_to_the_size_they_are_meant_to_have() {
         let found = load(suite.name, suite.text, &registry, &Overrides::default());
         let plan = found.unwrap_or_else(|e| panic!("{}: {:#?}", suite.name, e.lines())).plan;
         assert_eq!(plan.suite, suite.name);
+        println!("{}: {} cases", suite.name, plan.cases.len());
         assert!(sizes.contains(&plan.cases.len()), "{}: {} cases", suite.name, plan.cases.len());
         let again = load(suite.name, suite.text, &registry, &Overrides::default()).ok().unwrap().plan;
         assert!(plan.cases.iter().zip(&again.cases).all(|(a, b)| a.label() == b.label()));
