@@ -10,6 +10,7 @@
 
 pub mod bsdf;
 pub mod checks;
+pub mod cli;
 pub mod engine;
 pub mod evidence;
 mod measure;
@@ -21,3 +22,4 @@ pub mod statistics;
 pub mod suite;
 
 pub use measure::{assert_valid, measure};
+pub use cli::main;

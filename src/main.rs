@@ -1,3 +1,7 @@
 //! The `gonio` command.
 
-fn main() {}
+use std::process::ExitCode;
+
+fn main() -> ExitCode {
+    gonio::main(gonio::registry::Registry::builtin())
+}

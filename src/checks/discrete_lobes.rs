@@ -113,6 +113,12 @@ impl Check for DiscreteLobes {
     }
 }
 
+/// √(p(1−p)): in its units a difference of probabilities is √D of the two cells
+/// {this lobe, all else}, since D = (q−p)²/p + (q−p)²/(1−p).
+fn spread(p: f64) -> f64 {
+    (p * (1.0 - p)).max(0.0).sqrt()
+}
+
 /// Counts against the claimed probabilities.
 fn probabilities(evidence: &Evidence, terms: &Terms) -> Judgement {
     let draws = &evidence.draws[terms.attempt];
@@ -120,7 +126,7 @@ fn probabilities(evidence: &Evidence, terms: &Terms) -> Judgement {
     let correction = (2.0 * draws.discrete.len() as f64).ln();
     let mut worst = (f64::INFINITY, 0);
     for (k, lobe) in draws.discrete.iter().enumerate() {
-        let slack = terms.mean_tolerance * lobe.probability;
+        let slack = terms.tolerance * spread(lobe.probability);
         let share = lobe.count as f64 / n as f64;
         let ln_p = if share > lobe.probability + slack {
             binomial::ln_upper_tail(lobe.count, n, lobe.probability + slack)
@@ -137,15 +143,13 @@ fn probabilities(evidence: &Evidence, terms: &Terms) -> Judgement {
     let lobe = &draws.discrete[worst.1];
     let ends = binomial::proportion_interval(lobe.count, n, 0.025);
     let share = lobe.count as f64 / n as f64;
-    let p = lobe.probability.min(1.0);
-    // √D of the two cells {this lobe, all else}: D = (q−p)²/p + (q−p)²/(1−p).
-    let scale = (p * (1.0 - p)).sqrt().max(1.0 / n as f64);
+    // A lobe that is always drawn has no spread, and any other draw is an error.
+    let scale = spread(lobe.probability).max(1.0 / n as f64);
     let off = |v: f64| (v - lobe.probability) / scale;
-    let slack = terms.mean_tolerance * p / scale;
     let effect = Effect::interval(
         "(frequency − P)/√(P(1−P))",
         (off(share), off(ends.0), off(ends.1)),
-        slack,
+        terms.tolerance,
     );
     let message = format!(
         "{} discrete lobes; `{}` has probability {:.5} and came in {share:.5} of {n} draws",
@@ -154,7 +158,7 @@ fn probabilities(evidence: &Evidence, terms: &Terms) -> Judgement {
         lobe.probability
     );
     let deviations = normal::quantile(terms.ln_tail - correction) + normal::quantile((1.0 - POWER).ln());
-    let limit = slack + deviations / (n as f64).sqrt();
+    let limit = terms.tolerance + deviations / (n as f64).sqrt();
     let outcome = Outcome {
         certain: false,
         effect: Some(effect),

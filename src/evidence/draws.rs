@@ -19,6 +19,9 @@ const PER_LIGHT: u64 = 8;
 /// More different discrete directions than this are not told apart.
 const MOST_DISCRETE: usize = 16;
 
+/// Larger values count as this one, so that sums of squares stay finite.
+const LARGEST: f64 = 1e140;
+
 /// Coarse cells of the table of serial pairs.
 pub const SERIAL: usize = 16;
 
@@ -72,6 +75,7 @@ impl Sums {
 
     #[inline]
     fn add(&mut self, c: usize, value: f64) {
+        let value = value.min(LARGEST);
         self.sum[c] += value;
         self.square[c] += value * value;
         if value > self.largest.0 {

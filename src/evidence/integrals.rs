@@ -16,6 +16,9 @@ const BASE_GRID: usize = 64;
 /// cubature even if no sample and no hint is near it.
 pub const SMALLEST_PEAK: f64 = STERADIANS / (BASE_GRID * BASE_GRID) as f64;
 
+/// Larger values count as this one, so that their sums stay finite.
+const LARGEST: f64 = 1e140;
+
 /// Randomised point sets of the cross-check. The spread of eight tells their
 /// standard error to a quarter.
 const CROSS_SETS: u32 = 8;
@@ -113,19 +116,19 @@ impl Integrals {
             measure(meter, setup, wi, &mut value, &mut density)?;
             for (k, (wi, row)) in wi.iter().zip(rows.chunks_exact_mut(goal.components)).enumerate() {
                 let p = density[k];
-                row[0] = p;
+                row[0] = p.min(LARGEST);
                 let mut mean = 0.0;
                 let mut top = 0.0f64;
                 for c in 0..channels {
-                    let f = value[k * channels + c] * wi.abs_cos_theta();
+                    let f = (value[k * channels + c] * wi.abs_cos_theta()).min(LARGEST);
                     row[1 + c] = f;
-                    row[1 + channels + c] = if p > 0.0 { f * f / p } else { 0.0 };
+                    row[1 + channels + c] = if p > 0.0 { (f * f / p).min(LARGEST) } else { 0.0 };
                     mean += f / channels as f64;
                     top = top.max(f);
                 }
                 let tail = &mut row[1 + 2 * channels..];
                 tail[0] = if p > 0.0 { 0.0 } else { mean };
-                tail[1] = if p > 0.0 { top / p } else { 0.0 };
+                tail[1] = if p > 0.0 { (top / p).min(LARGEST) } else { 0.0 };
                 let both = p + cosine_density(setup, *wi);
                 tail[2] = if both > 0.0 { top / both } else { 0.0 };
             }

@@ -74,13 +74,16 @@ impl Variation {
         variants: &[Variant],
     ) -> Result<Vec<Self>, Halt> {
         let wi = probes::directions(setup, pilot, ROWS);
-        let own = Response::of(meter, setup, &wi)?;
+        // A parameter may well do nothing at the case's own wo: masking of a
+        // smooth surface begins within a fraction of a degree of the horizon.
+        let given = [setup.wo, oblique(setup, 60.0), oblique(setup, 89.9)];
+        let own = Response::of(meter, setup, &given, &wi)?;
         let mut all = Vec::new();
         for variant in variants {
             let description = Meter::describe(&*variant.subject)?;
             let other = Meter::new(&*variant.subject, description, watch.clone());
             let change = if other.channels() == meter.channels() && other.dimensions() == meter.dimensions() {
-                own.distance(&Response::of(&other, setup, &wi)?)
+                own.distance(&Response::of(&other, setup, &given, &wi)?)
             } else {
                 f64::INFINITY
             };
@@ -103,25 +106,38 @@ struct Response {
 }
 
 impl Response {
-    fn of(meter: &Meter, setup: &Setup, wi: &[Direction]) -> Result<Self, Halt> {
+    fn of(meter: &Meter, setup: &Setup, given: &[Direction], wi: &[Direction]) -> Result<Self, Halt> {
         let mut numbers = Vec::new();
+        for wo in given {
+            Self::at(meter, setup, *wo, wi, &mut numbers)?;
+        }
+        Ok(Self { numbers })
+    }
+
+    fn at(
+        meter: &Meter,
+        setup: &Setup,
+        wo: Direction,
+        wi: &[Direction],
+        numbers: &mut Vec<f64>,
+    ) -> Result<(), Halt> {
         let mut part = Vec::new();
         if meter.description.has.eval {
-            meter.eval(setup.wo, wi, setup.transport, &mut part)?;
+            meter.eval(wo, wi, setup.transport, &mut part)?;
             numbers.extend_from_slice(&part);
         }
         if meter.description.has.pdf {
-            meter.pdf(setup.wo, wi, setup.transport, &mut part)?;
+            meter.pdf(wo, wi, setup.transport, &mut part)?;
             numbers.extend_from_slice(&part);
         }
         if meter.description.has.sample {
-            let samples = draw(meter, setup, setup.wo, ROWS)?;
+            let samples = draw(meter, setup, wo, ROWS)?;
             for (k, d) in samples.wi.iter().enumerate() {
                 numbers.extend([d.x, d.y, d.z, samples.pdf[k], f64::from(samples.lobe[k].0)]);
             }
             numbers.extend(samples.weight);
         }
-        Ok(Self { numbers })
+        Ok(())
     }
 
     fn distance(&self, other: &Self) -> f64 {
@@ -131,6 +147,12 @@ impl Response {
         let errors = self.numbers.iter().zip(&other.numbers).map(|(a, b)| relative_error(*a, *b, 1e-12));
         errors.fold(0.0, f64::max)
     }
+}
+
+/// A direction on the side of wo, at its azimuth, this many degrees from the normal.
+fn oblique(setup: &Setup, theta_deg: f64) -> Direction {
+    let d = Direction::from_angles(theta_deg.to_radians(), setup.wo.phi());
+    if setup.wo.z > 0.0 { d } else { d.flipped() }
 }
 
 fn draw(meter: &Meter, setup: &Setup, wo: Direction, rows: usize) -> Result<Samples, Halt> {

@@ -8,6 +8,7 @@ mod disc;
 mod disc_frame;
 mod disc_leaves;
 mod figure;
+mod folder;
 mod json;
 mod numbers;
 mod plots;
@@ -23,6 +24,7 @@ mod wording;
 pub use build::Files;
 pub use curves::{albedo as albedo_curve, p_values as p_value_histogram};
 pub use disc::{Caption, picture as disc_picture};
+pub use folder::{REPORT, draw_results, evidence_of, redraw, write_report};
 pub use json::{
     AttemptRow, CheckResult, Diagnosis, Machine, Report, SCHEMA_VERSION, SubjectId, Summary, WoAngles,
 };

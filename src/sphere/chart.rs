@@ -32,6 +32,16 @@ impl Chart {
         Self { cos, sin }
     }
 
+    /// A chart whose x axis is at this (cos, sin).
+    pub fn with_x_axis([cos, sin]: [f64; 2]) -> Self {
+        Self { cos, sin }
+    }
+
+    /// cos and sin of the azimuth of its x axis.
+    pub fn x_axis(&self) -> [f64; 2] {
+        [self.cos, self.sin]
+    }
+
     /// The azimuth of its x axis in (−π, π].
     pub fn phi0(&self) -> f64 {
         self.sin.atan2(self.cos)

@@ -320,11 +320,11 @@ fn partition_points(points: &mut [Point], first: impl Fn(&Point) -> bool) -> usi
     count
 }
 
-/// The saved form: `phi0`, and in preorder −1 for a leaf or 2·at·2⁴⁰ + axis
+/// The saved form: cos and sin of the chart's azimuth, and in preorder −1 for a leaf or 2·at·2⁴⁰ + axis
 /// for a split.
 #[derive(Serialize, Deserialize)]
 struct Saved {
-    phi0: f64,
+    x_axis: [f64; 2],
     preorder: Vec<i64>,
 }
 
@@ -342,7 +342,7 @@ impl From<Partition> for Saved {
                 }
             }
         }
-        Self { phi0: tree.chart.phi0(), preorder }
+        Self { x_axis: tree.chart.x_axis(), preorder }
     }
 }
 
@@ -350,7 +350,7 @@ impl TryFrom<Saved> for Partition {
     type Error = String;
 
     fn try_from(saved: Saved) -> Result<Self, String> {
-        let mut tree = Self::sphere(Chart::new(saved.phi0));
+        let mut tree = Self::sphere(Chart::with_x_axis(saved.x_axis));
         let mut open = vec![0usize];
         let mut codes = saved.preorder.iter();
         while let Some(node) = open.pop() {
@@ -438,7 +438,7 @@ mod tests {
 
     #[test]
     fn is_saved_exactly() {
-        let tree = Partition::build(Chart::new(0.0), random(1 << 12, 1), 256);
+        let tree = Partition::build(Chart::new(2.3), random(1 << 12, 1), 256);
         let text = serde_json::to_string(&tree).unwrap();
         let again: Partition = serde_json::from_str(&text).unwrap();
         assert_eq!(tree.len(), again.len());
@@ -452,7 +452,7 @@ mod tests {
 
     #[test]
     fn refuses_a_broken_tree() {
-        for text in [r#"{"phi0":0,"preorder":[]}"#, r#"{"phi0":0,"preorder":[3,-1,-1]}"#] {
+        for text in [r#"{"x_axis":[1,0],"preorder":[]}"#, r#"{"x_axis":[1,0],"preorder":[3,-1,-1]}"#] {
             assert!(serde_json::from_str::<Partition>(text).is_err(), "{text}");
         }
     }

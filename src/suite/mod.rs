@@ -1,5 +1,25 @@
 //! Suite files, and the plan of cases that they expand to.
 
+mod combination;
+mod embedded;
+mod expand;
+mod file;
+mod mistake;
+mod pairs;
 mod plan;
+mod promises;
+mod reader;
+mod reproduce;
+mod variants;
 
+#[cfg(test)]
+pub(crate) mod tests;
+
+pub use embedded::{EMBEDDED, Embedded, embedded};
+pub use expand::{Expanded, expand, load};
+pub use file::{Cover, Entry, FALSE_ALARM, Overrides, PHI, SEED, SuiteFile, THETA, time_limit};
+pub use mistake::{Mistake, SuiteError};
 pub use plan::{Case, ClaimsPatch, Plan, Settings, Waiver};
+pub use promises::set_claim;
+pub use reader::{azimuth, count, fraction, polar, positive};
+pub use reproduce::reproduce;

@@ -84,6 +84,7 @@ pub(in crate::models) fn model() -> Model {
     .number("alpha", 0.2, 1e-4..=1.0, "roughness along the tangent (gaussian: an angle in radians)")
     .role(Role::Roughness)
     .number("alpha_y", 0.0, 0.0..=1.0, "roughness along the bitangent; 0: as alpha")
+    .role(Role::Roughness)
     .choice("distribution", &["ggx", "beckmann", "gaussian"], "distribution D of facet normals")
     .choice("masking", &["smith", "v-cavity"], "masking and shadowing G2 (smith: correlated by height)")
     .choice("fresnel", &["none", "schlick", "dielectric", "conductor"], "reflectance F of a facet")

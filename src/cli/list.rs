@@ -1,0 +1,91 @@
+//! `gonio list`.
+
+use super::error::CliError;
+use super::exit::Exit;
+use super::output::emit;
+use crate::registry::{Kind, Model, Parameter, Registry};
+
+/// Arguments of `gonio list`.
+#[derive(Debug, clap::Args)]
+pub struct ListArgs {
+    /// Show the parameters of this subject.
+    pub name: Option<String>,
+}
+
+/// Shows the subjects, or the parameters of one.
+pub fn list(args: &ListArgs, registry: &Registry) -> Result<Exit, CliError> {
+    let text = match &args.name {
+        None => subjects(registry),
+        Some(name) => parameters(registry.model(name)?),
+    };
+    emit(&text)?;
+    Ok(Exit::Passed)
+}
+
+fn subjects(registry: &Registry) -> String {
+    let rows = registry.models().iter().map(|m| vec![m.name().to_string(), m.doc().to_string()]);
+    table(&["name", "what it is"], rows.collect())
+}
+
+fn parameters(model: &Model) -> String {
+    let head = format!("{}: {}\n", model.name(), model.doc());
+    if model.parameters().is_empty() {
+        return head + "It has no parameters.\n";
+    }
+    let rows = model.parameters().iter().map(|p| {
+        let (kind, range) = kind(p);
+        vec![p.name.clone(), kind.into(), p.default().to_string(), range, format!("{}{}", p.doc, when(p))]
+    });
+    format!("{head}\n{}", table(&["parameter", "type", "default", "values", "what it is"], rows.collect()))
+}
+
+fn kind(parameter: &Parameter) -> (&'static str, String) {
+    match &parameter.kind {
+        Kind::Number { min, max, .. } => ("number", format!("{min} to {max}")),
+        Kind::Choice { options, .. } => ("choice", options.join(", ")),
+    }
+}
+
+fn when(parameter: &Parameter) -> String {
+    match &parameter.only_when {
+        Some((name, values)) => format!(" (when {name} = {})", values.join(" or ")),
+        None => String::new(),
+    }
+}
+
+/// Columns as wide as their widest cell; the last one is not padded.
+fn table(head: &[&str], rows: Vec<Vec<String>>) -> String {
+    let mut all = vec![head.iter().map(ToString::to_string).collect::<Vec<_>>()];
+    all.extend(rows);
+    let width = |k: usize| all.iter().map(|row| row[k].chars().count()).max().unwrap_or(0);
+    let widths: Vec<usize> = (0..head.len() - 1).map(width).collect();
+    let mut text = String::new();
+    for row in &all {
+        for (cell, width) in row.iter().zip(&widths) {
+            text.push_str(&format!("{cell:width$}  "));
+        }
+        text.push_str(&row[head.len() - 1]);
+        text.push('\n');
+    }
+    text
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn parameters_show_what_may_be_typed() {
+        let model = Model::new("m", "a model", |_| Err::<crate::models::Lambert, _>("never built".into()))
+            .choice("f", &["none", "schlick"], "Fresnel")
+            .number("f0", 0.04, 0.0..=1.0, "reflectance")
+            .only_when("f", &["schlick"]);
+        let text = parameters(&model);
+        let expected = "m: a model\n\n\
+            parameter  type    default  values         what it is\n\
+            f          choice  none     none, schlick  Fresnel\n\
+            f0         number  0.04     0 to 1         reflectance (when f = schlick)\n";
+        assert_eq!(text, expected);
+        assert!(subjects(&Registry::empty().register(model)).ends_with("m     a model\n"));
+    }
+}

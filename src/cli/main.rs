@@ -1,0 +1,51 @@
+//! Arguments to exit code.
+
+use super::args::{Args, Command};
+use super::error::CliError;
+use super::exit::Exit;
+use super::output::tell;
+use super::{completions, list, report, run, schema};
+use crate::registry::Registry;
+use clap::Parser;
+use std::panic::{AssertUnwindSafe, catch_unwind};
+use std::process::ExitCode;
+
+/// The command line over these models: all of `main` that a program of one's
+/// own needs.
+///
+/// ```no_run
+/// fn main() -> std::process::ExitCode {
+///     gonio::main(gonio::registry::Registry::builtin())
+/// }
+/// ```
+pub fn main(registry: Registry) -> ExitCode {
+    let args = match Args::try_parse() {
+        Ok(args) => args,
+        Err(e) => {
+            let _ = e.print();
+            return if e.exit_code() == 0 { Exit::Passed.into() } else { Exit::Usage.into() };
+        }
+    };
+    let voice = args.voice;
+    let done = catch_unwind(AssertUnwindSafe(|| obey(args, &registry)));
+    let done = done.unwrap_or_else(|_| Err(CliError::Internal("a panic, as told above".into())));
+    match done {
+        Ok(exit) => exit.into(),
+        Err(e) => {
+            tell(voice.error_page(&e).trim_end());
+            e.exit().into()
+        }
+    }
+}
+
+fn obey(args: Args, registry: &Registry) -> Result<Exit, CliError> {
+    let voice = args.voice;
+    match args.command {
+        Command::Run(args) => run::execute(&args.request(registry)?, voice),
+        Command::Check(args) => run::execute(&args.request(registry)?, voice),
+        Command::List(args) => list::list(&args, registry),
+        Command::Report(args) => report::report(&args, voice),
+        Command::Schema(args) => schema::schema(&args),
+        Command::Completions(args) => completions::completions(&args),
+    }
+}

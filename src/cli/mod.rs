@@ -1,0 +1,18 @@
+//! The command line: one file per subcommand. Nothing else in gonio knows of it.
+
+mod args;
+mod check;
+mod completions;
+mod error;
+mod exit;
+mod list;
+mod main;
+mod output;
+mod progress;
+mod report;
+mod run;
+mod schema;
+
+pub use args::Args;
+pub use exit::Exit;
+pub use main::main;

@@ -1,0 +1,81 @@
+//! A report as a folder: report.json, evidence and pictures.
+
+use super::json::{CheckResult, Report};
+use super::plots::{Pictured, Which, draw};
+use super::saved::{FileError, evidence_path, read_evidence, write_whole};
+use crate::checks::{Verdict, level_p_values};
+use crate::engine::Results;
+use crate::evidence::Evidence;
+use std::collections::BTreeMap;
+use std::path::Path;
+
+/// The file of the report itself.
+pub const REPORT: &str = "report.json";
+
+/// Writes report.json.
+pub fn write_report(folder: &Path, report: &Report) -> Result<(), FileError> {
+    let mut text = serde_json::to_string_pretty(report).unwrap_or_default();
+    text.push('\n');
+    write_whole(&folder.join(REPORT), text.as_bytes())
+}
+
+/// Draws the pictures of results; the path of each pictured case by its number.
+pub fn draw_results(
+    folder: &Path,
+    results: &Results,
+    which: Which,
+) -> Result<BTreeMap<usize, String>, FileError> {
+    let mut cases = Vec::new();
+    let mut p_values = Vec::new();
+    for case in &results.cases {
+        let Some(evidence) = &case.evidence else { continue };
+        p_values.extend(level_p_values(evidence));
+        let fit = case.findings.iter().find(|f| f.check == "goodness-of-fit");
+        let root_d = fit.and_then(|f| f.outcome.effect.as_ref()).map(|e| e.value.0);
+        let suspicious = case.findings.iter().any(|f| is_suspicious(f.outcome.verdict));
+        cases.push(Pictured { index: case.index, group: &case.case.group, evidence, suspicious, root_d });
+    }
+    draw(folder, &cases, &p_values, which)
+}
+
+/// Draws the pictures of a saved report again from its evidence; how many
+/// cases have one.
+pub fn redraw(folder: &Path, report: &Report, which: Which) -> Result<usize, FileError> {
+    let mut rows: BTreeMap<&str, Vec<&CheckResult>> = BTreeMap::new();
+    for row in &report.results {
+        if let Some(path) = &row.evidence {
+            rows.entry(path).or_default().push(row);
+        }
+    }
+    let mut all: Vec<(usize, Evidence, &[&CheckResult])> = Vec::new();
+    let mut p_values = Vec::new();
+    for (path, rows) in &rows {
+        let evidence = read_evidence(&folder.join(path))?;
+        p_values.extend(level_p_values(&evidence));
+        let digits: String = path.chars().filter(char::is_ascii_digit).collect();
+        all.push((digits.parse().unwrap_or(all.len()), evidence, rows));
+    }
+    let cases: Vec<Pictured> = all
+        .iter()
+        .map(|(index, evidence, rows)| {
+            let fit = rows.iter().find(|r| r.check == "goodness-of-fit");
+            Pictured {
+                index: *index,
+                group: rows[0].subject.name.split(':').next().unwrap_or_default(),
+                evidence,
+                suspicious: rows.iter().any(|r| is_suspicious(r.verdict)),
+                root_d: fit.and_then(|r| r.effect.as_ref()).map(|e| e.value.0),
+            }
+        })
+        .collect();
+    Ok(draw(folder, &cases, &p_values, which)?.len())
+}
+
+/// The path of a case's evidence, if it has any.
+pub fn evidence_of(case: &crate::engine::CaseResult) -> Option<String> {
+    case.evidence.as_ref().map(|_| evidence_path(case.index))
+}
+
+fn is_suspicious(verdict: Verdict) -> bool {
+    matches!(verdict, Verdict::Fail | Verdict::Inconclusive | Verdict::Warn | Verdict::Waived)
+}

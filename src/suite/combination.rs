@@ -1,0 +1,172 @@
+//! The models of an entry with each combination of its parameters.
+
+use super::file::{Entry, SUBJECT_KEYS};
+use super::mistake::Mistake;
+use super::pairs::product;
+use super::variants::variants;
+use crate::bsdf::{Claims, Subject};
+use crate::evidence::{Company, Meter};
+use crate::registry::{Kind, Model, Parameters, Registry, RegistryError, Spelling, Value, nearest};
+use std::collections::HashSet;
+use std::sync::Arc;
+
+/// More combinations of parameters than this are a slip.
+const MOST_COMBINATIONS: usize = 100_000;
+
+/// A model with all its parameters.
+#[derive(Clone)]
+pub(super) struct Combination {
+    pub spelling: String,
+    pub parameters: Parameters,
+    pub subject: Arc<dyn Subject>,
+    pub claims: Claims,
+    pub company: Company<'static>,
+}
+
+/// The combinations of an entry's parameters.
+pub(super) struct Combinations {
+    /// How many values each listed parameter has.
+    pub levels: Vec<usize>,
+    /// In the order of [`product`]: `None` where the model refuses, or where the
+    /// subject is the same as an earlier one because a parameter does not apply.
+    pub all: Vec<Option<Combination>>,
+    /// How many the model refused.
+    pub refused: usize,
+    spellings: HashSet<String>,
+}
+
+impl Combinations {
+    /// Builds them; what is wrong is noted.
+    pub fn of(registry: &Registry, entry: &Entry, mistakes: &mut Vec<Mistake>) -> Option<Self> {
+        let before = mistakes.len();
+        let reference = reference(registry, entry, mistakes);
+        let model = match registry.model(entry.model.get_ref()) {
+            Ok(model) => model,
+            Err(e) => {
+                mistakes.push(Mistake::of_registry(entry.model.span(), &e));
+                return None;
+            }
+        };
+        let values = values(model, entry, mistakes);
+        if mistakes.len() > before {
+            return None;
+        }
+        let levels: Vec<usize> = values.iter().map(Vec::len).collect();
+        let number = levels.iter().try_fold(1usize, |n, l| n.checked_mul(*l));
+        if number.is_none_or(|n| n > MOST_COMBINATIONS) {
+            let message = format!("the parameters of `{}` make too many combinations", model.name());
+            let help = format!("at most {MOST_COMBINATIONS}: list fewer values");
+            mistakes.push(Mistake::new(entry.model.span(), message, "too many").help(help));
+            return None;
+        }
+        let mut found = Self { levels, all: Vec::new(), refused: 0, spellings: HashSet::new() };
+        let mut first_error = None;
+        for row in product(&found.levels.clone()) {
+            let given = values.iter().zip(&row).map(|(list, k)| list[*k].clone()).collect();
+            match build(model, given) {
+                Ok((parameters, subject)) => found.add(model, entry, &reference, parameters, subject),
+                Err(e) => {
+                    found.refused += 1;
+                    found.all.push(None);
+                    first_error.get_or_insert(e);
+                }
+            }
+        }
+        if let Some(e) = first_error.filter(|_| found.all.iter().all(Option::is_none)) {
+            mistakes.push(Mistake::of_registry(entry.model.span(), &e));
+            return None;
+        }
+        Some(found)
+    }
+
+    fn add(
+        &mut self,
+        model: &Model,
+        entry: &Entry,
+        reference: &Option<(String, Arc<dyn Subject>)>,
+        parameters: Parameters,
+        subject: Arc<dyn Subject>,
+    ) {
+        let spelling = model.spell(&parameters);
+        if !self.spellings.insert(spelling.clone()) {
+            self.all.push(None);
+            return;
+        }
+        // A subject that cannot even describe itself is told so when it is run.
+        let own = Meter::describe(&*subject).map(|d| d.claims).unwrap_or_default();
+        self.all.push(Some(Combination {
+            spelling,
+            claims: entry.claims.over(own),
+            company: Company { variants: variants(model, &parameters), reference: reference.clone() },
+            parameters,
+            subject,
+        }));
+    }
+}
+
+/// A parameter that does not apply goes back to its default, so that a subject
+/// has one spelling.
+fn build(
+    model: &Model,
+    mut given: Vec<(String, Value)>,
+) -> Result<(Parameters, Arc<dyn Subject>), RegistryError> {
+    let parameters = model.complete(&given)?;
+    given.retain(|(name, _)| model.parameter(name).is_ok_and(|p| p.applies(&parameters)));
+    let parameters = model.complete(&given)?;
+    let subject = model.build(&parameters)?;
+    Ok((parameters, subject))
+}
+
+/// Choices that look like numbers are text to their model.
+fn as_declared(model: &Model, name: &str, value: &Value) -> Value {
+    match model.parameter(name).map(|p| &p.kind) {
+        Ok(Kind::Choice { .. }) => Value::Text(value.to_string()),
+        _ => value.clone(),
+    }
+}
+
+fn values(model: &Model, entry: &Entry, mistakes: &mut Vec<Mistake>) -> Vec<Vec<(String, Value)>> {
+    let mut all = Vec::new();
+    for (name, values) in &entry.parameters {
+        if model.parameter(name.get_ref()).is_err() {
+            mistakes.push(unknown_parameter(model, name));
+            continue;
+        }
+        let mut list = Vec::new();
+        for value in values {
+            let given = (name.get_ref().clone(), as_declared(model, name.get_ref(), value.get_ref()));
+            match model.complete(std::slice::from_ref(&given)) {
+                Ok(_) => list.push(given),
+                Err(e) => mistakes.push(Mistake::of_registry(value.span(), &e)),
+            }
+        }
+        all.push(list);
+    }
+    all
+}
+
+fn unknown_parameter(model: &Model, name: &toml::Spanned<String>) -> Mistake {
+    let parameters = model.parameters().iter().map(|p| p.name.as_str());
+    let message = format!("`{}` has no parameter `{name}`", model.name());
+    let help = match nearest(name.get_ref(), parameters.clone().chain(SUBJECT_KEYS)) {
+        Some(n) => format!("did you mean `{n}`?"),
+        None if model.parameters().is_empty() => "it has none".into(),
+        None => format!("there are {}", parameters.collect::<Vec<_>>().join(", ")),
+    };
+    Mistake::new(name.span(), message, "no such parameter").help(help)
+}
+
+fn reference(
+    registry: &Registry,
+    entry: &Entry,
+    mistakes: &mut Vec<Mistake>,
+) -> Option<(String, Arc<dyn Subject>)> {
+    let text = entry.reference.as_ref()?;
+    let found = text.get_ref().parse::<Spelling>().and_then(|spelling| {
+        let model = registry.model(&spelling.name)?;
+        let given = spelling.parameters.iter().map(|(n, v)| (n.clone(), as_declared(model, n, v)));
+        let (parameters, subject) = build(model, given.collect())?;
+        Ok((model.spell(&parameters), subject))
+    });
+    found.map_err(|e| mistakes.push(Mistake::of_registry(text.span(), &e))).ok()
+}

@@ -1,0 +1,358 @@
+//! The format of suite files.
+
+use super::mistake::{Mistake, SuiteError};
+use super::plan::{ClaimsPatch, Settings, Waiver};
+use super::promises::{claims, waivers};
+use super::reader::{Node, Reader, azimuth, entries, fraction, polar, positive};
+use crate::bsdf::Transport;
+use crate::checks;
+use crate::registry::{Value, nearest};
+use std::time::Duration;
+use toml::Spanned;
+use toml::de::{DeTable, DeValue};
+
+/// Which combinations of values become cases.
+#[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
+pub enum Cover {
+    /// All of them.
+    #[default]
+    All,
+    /// So many that every two values of two factors meet at least once.
+    Pairs,
+}
+
+/// A suite as it is written, before its names are looked up.
+#[derive(Clone, Debug)]
+pub struct SuiteFile {
+    /// Its name.
+    pub name: String,
+    /// Seed of all random numbers.
+    pub seed: u64,
+    /// Probability that a run of correct subjects shows any failure.
+    pub false_alarm: f64,
+    /// Sharpness.
+    pub settings: Settings,
+    /// Polar angles of wo in degrees.
+    pub theta: Vec<f64>,
+    /// Azimuths of wo in degrees.
+    pub phi: Vec<f64>,
+    /// Which combinations become cases.
+    pub cover: Cover,
+    /// Whether the other side of a subject that has one is measured too.
+    pub sides: bool,
+    /// The one mode of transport to measure, in place of those that subjects claim.
+    pub transport: Option<Transport>,
+    /// Checks to run; all where empty.
+    pub checks: Vec<String>,
+    /// What is measured.
+    pub entries: Vec<Entry>,
+    /// What the text is called in messages: a path.
+    pub source_name: String,
+    /// The text that the spans refer to.
+    pub text: String,
+}
+
+/// One `[[subject]]`.
+#[derive(Clone, Debug)]
+pub struct Entry {
+    /// The registered model.
+    pub model: Spanned<String>,
+    /// The name of its row in reports.
+    pub label: Option<String>,
+    /// Parameters with one value or several.
+    pub parameters: Vec<(Spanned<String>, Vec<Spanned<Value>>)>,
+    /// Claims in place of the subject's.
+    pub claims: ClaimsPatch,
+    /// Accepted failures.
+    pub waivers: Vec<Waiver>,
+    /// Another subject to compare with.
+    pub reference: Option<Spanned<String>>,
+    /// In place of the suite's.
+    pub theta: Option<Vec<f64>>,
+    /// In place of the suite's.
+    pub phi: Option<Vec<f64>>,
+    /// In place of the suite's.
+    pub cover: Option<Cover>,
+    /// In place of the suite's.
+    pub samples: Option<u64>,
+}
+
+/// What the command line puts in place of what a suite says.
+#[derive(Clone, Debug, Default, PartialEq)]
+pub struct Overrides {
+    /// The seed.
+    pub seed: Option<u64>,
+    /// The cap of samples.
+    pub samples: Option<u64>,
+    /// Polar angles in degrees; the suite's where empty.
+    pub theta: Vec<f64>,
+    /// Azimuths in degrees; the suite's where empty.
+    pub phi: Vec<f64>,
+    /// Checks; the suite's where empty.
+    pub checks: Vec<String>,
+}
+
+/// Polar angles where none are given: normal, generic, and towards grazing,
+/// where missing terms show with few samples.
+pub const THETA: [f64; 6] = [0.0, 30.0, 60.0, 75.0, 85.0, 89.0];
+
+/// Azimuths where none are given: generic ones, since a frame built in the wrong
+/// basis is invisible at 0.
+pub const PHI: [f64; 3] = [17.0, 137.0, 257.0];
+
+/// Seed where none is given.
+pub const SEED: u64 = 1;
+
+/// Probability of any false alarm where none is given.
+pub const FALSE_ALARM: f64 = 1e-6;
+
+const SUITE_KEYS: [&str; 11] = [
+    "name",
+    "seed",
+    "false_alarm",
+    "tolerance",
+    "samples",
+    "detect",
+    "theta",
+    "phi",
+    "cover",
+    "time_limit",
+    "checks",
+];
+
+/// Keys of a `[[subject]]` that are not parameters of its model.
+pub(super) const SUBJECT_KEYS: [&str; 9] =
+    ["use", "claims", "waive", "reference", "theta", "phi", "cover", "samples", "label"];
+
+const FOREIGN_KEYS: [&str; 5] = ["process", "library", "wasm", "shader", "file"];
+
+impl SuiteFile {
+    /// A suite without subjects, all at its defaults.
+    pub fn new(name: &str, source_name: &str, text: &str) -> Self {
+        Self {
+            name: name.into(),
+            seed: SEED,
+            false_alarm: FALSE_ALARM,
+            settings: Settings::default(),
+            theta: THETA.to_vec(),
+            phi: PHI.to_vec(),
+            cover: Cover::All,
+            sides: true,
+            transport: None,
+            checks: Vec::new(),
+            entries: Vec::new(),
+            source_name: source_name.into(),
+            text: text.into(),
+        }
+    }
+
+    /// Reads a suite. It is called by the stem of `source_name` unless it names itself.
+    pub fn parse(source_name: &str, text: &str) -> Result<Self, SuiteError> {
+        let (file, mistakes) = Self::read(source_name, text)?;
+        if mistakes.is_empty() { Ok(file) } else { Err(file.error(mistakes)) }
+    }
+
+    /// As [`parse`](Self::parse), with the mistakes that leave something to go on with.
+    pub(super) fn read(source_name: &str, text: &str) -> Result<(Self, Vec<Mistake>), SuiteError> {
+        let path = std::path::Path::new(source_name);
+        let stem = path.file_stem().map_or(source_name.into(), |s| s.to_string_lossy());
+        let mut file = Self::new(&stem, source_name, text);
+        let table = DeTable::parse(text).map_err(|e| {
+            let span = e.span().unwrap_or(0..0);
+            file.error(vec![Mistake::new(span, format!("this is not TOML: {}", e.message()), "here")])
+        })?;
+        let mut reader = Reader::default();
+        for (key, span, value) in entries(table.get_ref()) {
+            match (key, value.get_ref()) {
+                ("suite", DeValue::Table(table)) => file.read_suite(&mut reader, table),
+                ("subject", DeValue::Array(list)) => {
+                    for item in list.iter() {
+                        file.read_subject(&mut reader, item);
+                    }
+                }
+                ("suite" | "subject", _) => {
+                    let wanted = if key == "suite" { "a table: [suite]" } else { "tables: [[subject]]" };
+                    let _: Option<()> = reader.wrong_type(key, value, wanted);
+                }
+                _ => reader.unknown(span, "table of a suite", key, &["suite", "subject"]),
+            }
+        }
+        Ok((file, reader.mistakes))
+    }
+
+    /// Puts what the command line asks for in place of what is written. Polar
+    /// angles that are given so are meant as they are: no other side is added.
+    pub fn apply(&mut self, overrides: &Overrides) {
+        set(&mut self.seed, overrides.seed);
+        set(&mut self.settings.samples, overrides.samples);
+        if !overrides.theta.is_empty() {
+            self.theta.clone_from(&overrides.theta);
+            self.sides = false;
+        }
+        if !overrides.phi.is_empty() {
+            self.phi.clone_from(&overrides.phi);
+        }
+        if !overrides.checks.is_empty() {
+            self.checks.clone_from(&overrides.checks);
+        }
+        for entry in &mut self.entries {
+            entry.theta.take_if(|_| !overrides.theta.is_empty());
+            entry.phi.take_if(|_| !overrides.phi.is_empty());
+            entry.samples.take_if(|_| overrides.samples.is_some());
+        }
+    }
+
+    /// These mistakes of this suite.
+    pub(super) fn error(&self, mistakes: Vec<Mistake>) -> SuiteError {
+        SuiteError::new(&self.source_name, &self.text, mistakes)
+    }
+
+    fn read_suite(&mut self, reader: &mut Reader, table: &DeTable) {
+        for (key, span, value) in entries(table) {
+            match key {
+                "name" => set(&mut self.name, reader.text(key, value).map(Spanned::into_inner)),
+                "seed" => set(&mut self.seed, reader.seed(key, value)),
+                "false_alarm" => set(&mut self.false_alarm, reader.number(key, value, fraction)),
+                "tolerance" => self.settings.tolerance = reader.number(key, value, fraction),
+                "samples" => set(&mut self.settings.samples, reader.count(key, value)),
+                "detect" => set(&mut self.settings.detect, reader.number(key, value, positive)),
+                "theta" => set(&mut self.theta, reader.numbers(key, value, polar)),
+                "phi" => set(&mut self.phi, reader.numbers(key, value, azimuth)),
+                "cover" => set(&mut self.cover, cover(reader, value)),
+                "time_limit" => {
+                    let limit = reader.number(key, value, time_limit);
+                    set(&mut self.settings.time_limit, limit.map(Duration::from_secs_f64));
+                }
+                "checks" => {
+                    for item in reader.items(key, value).unwrap_or_default() {
+                        if let Some(id) = check_id(reader, key, item) {
+                            if self.checks.contains(&id) {
+                                reader.twice(key, item.span(), &format!("`{id}`"));
+                            } else {
+                                self.checks.push(id);
+                            }
+                        }
+                    }
+                }
+                _ => reader.unknown(span, "key of [suite]", key, &SUITE_KEYS),
+            }
+        }
+    }
+
+    fn read_subject(&mut self, reader: &mut Reader, item: &Node) {
+        let DeValue::Table(table) = item.get_ref() else {
+            let _: Option<()> = reader.wrong_type("subject", item, "tables: [[subject]]");
+            return;
+        };
+        let mut model = None;
+        let mut named = false;
+        let mut entry = Entry {
+            model: Spanned::new(item.span(), String::new()),
+            label: None,
+            parameters: Vec::new(),
+            claims: ClaimsPatch::default(),
+            waivers: Vec::new(),
+            reference: None,
+            theta: None,
+            phi: None,
+            cover: None,
+            samples: None,
+        };
+        for (key, span, value) in entries(table) {
+            match key {
+                "use" => (named, model) = (true, reader.text(key, value)),
+                "label" => entry.label = self.read_label(reader, value),
+                "claims" => entry.claims = claims(reader, value),
+                "waive" => entry.waivers = waivers(reader, value),
+                "reference" => entry.reference = reader.text(key, value),
+                "theta" => entry.theta = reader.numbers(key, value, polar),
+                "phi" => entry.phi = reader.numbers(key, value, azimuth),
+                "cover" => entry.cover = cover(reader, value),
+                "samples" => entry.samples = reader.count(key, value),
+                _ if FOREIGN_KEYS.contains(&key) && !table.contains_key("use") => {
+                    named = true;
+                    let message = format!("subjects from a `{key}` are not supported by this version");
+                    let help = "use = \"NAME\" takes a registered subject; `gonio list` shows them";
+                    reader.note(Mistake::new(span, message, "not supported").help(help));
+                }
+                _ if !is_parameter(value) && nearest(key, SUBJECT_KEYS.into_iter()).is_some() => {
+                    reader.unknown(span, "key of a [[subject]]", key, &SUBJECT_KEYS);
+                }
+                _ => {
+                    let values = parameter(reader, key, value);
+                    entry.parameters.push((Spanned::new(span, key.into()), values));
+                }
+            }
+        }
+        if !named {
+            let help = "add use = \"NAME\"; `gonio list` shows the names";
+            // The span of an entry is its header.
+            reader.note(Mistake::new(item.span(), "a [[subject]] without `use`", "what is it?").help(help));
+        }
+        if let Some(model) = model {
+            self.entries.push(Entry { model, ..entry });
+        }
+    }
+
+    fn read_label(&self, reader: &mut Reader, value: &Node) -> Option<String> {
+        let label = reader.text("label", value)?;
+        if self.entries.iter().any(|e| e.label.as_ref() == Some(label.get_ref())) {
+            let message = format!("another subject is labelled `{}`", label.get_ref());
+            reader.note(
+                Mistake::new(label.span(), message, "the second time")
+                    .help("labels name rows: choose another"),
+            );
+        }
+        Some(label.into_inner())
+    }
+}
+
+fn set<T>(place: &mut T, value: Option<T>) {
+    if let Some(value) = value {
+        *place = value;
+    }
+}
+
+/// Seconds that a case may take.
+pub fn time_limit(seconds: f64) -> Result<f64, String> {
+    // A year: more is a slip, and Duration has an end.
+    if seconds > 0.0 && seconds <= 3.2e7 {
+        Ok(seconds)
+    } else {
+        Err(format!("{seconds} is not a time; type seconds, for example 60"))
+    }
+}
+
+fn cover(reader: &mut Reader, value: &Node) -> Option<Cover> {
+    Some(if reader.word("cover", value, &["all", "pairs"])? == "all" { Cover::All } else { Cover::Pairs })
+}
+
+pub(super) fn check_id(reader: &mut Reader, key: &str, value: &Node) -> Option<String> {
+    let text = reader.text(key, value)?;
+    if checks::find(text.get_ref()).is_none() {
+        let known: Vec<_> = checks::all().iter().map(|c| c.id()).collect();
+        reader.unknown(text.span(), "check", text.get_ref(), &known);
+        return None;
+    }
+    Some(text.into_inner())
+}
+
+/// Whether a parameter may have this value.
+fn is_parameter(value: &Node) -> bool {
+    let simple =
+        |v: &Node| matches!(v.get_ref(), DeValue::String(_) | DeValue::Integer(_) | DeValue::Float(_));
+    value.get_ref().as_array().map_or_else(|| simple(value), |list| list.iter().all(simple))
+}
+
+fn parameter(reader: &mut Reader, key: &str, value: &Node) -> Vec<Spanned<Value>> {
+    let mut values: Vec<Spanned<Value>> = Vec::new();
+    for item in reader.items(key, value).unwrap_or_default() {
+        let Some(found) = reader.value(key, item) else { continue };
+        if values.contains(&found) {
+            reader.twice(key, item.span(), &found.get_ref().to_string());
+        } else {
+            values.push(found);
+        }
+    }
+    values
+}
