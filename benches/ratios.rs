@@ -109,8 +109,10 @@ fn parallel() {
 fn integration() {
     println!("evaluations of pdf, and error of its mass, to integrate a GGX pdf:");
     for alpha in [1.0, 0.3, 0.1, 0.03, 0.01, 0.003, 0.001] {
-        let results =
-            run_here(&plan([0.0, 30.0, 60.0, 75.0, 85.0, 89.0].map(|t| (alpha, t)), 1 << 18, &["normalization"]), &Options::default());
+        let results = run_here(
+            &plan([0.0, 30.0, 60.0, 75.0, 85.0, 89.0].map(|t| (alpha, t)), 1 << 18, &["normalization"]),
+            &Options::default(),
+        );
         let cells: Vec<String> = results
             .cases
             .iter()

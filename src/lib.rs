@@ -21,5 +21,5 @@ pub mod sphere;
 pub mod statistics;
 pub mod suite;
 
-pub use measure::{assert_valid, measure};
 pub use cli::main;
+pub use measure::{assert_valid, measure};

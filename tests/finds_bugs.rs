@@ -74,7 +74,11 @@ const ROWS: &[Row] = &[
     (Bug::WeightCosine, &["weight", "albedo"], &["mis"]),
     (Bug::ReturnedPdf(1.1), &["returned-pdf"], &["mis"]),
     (Bug::FresnelAtNormal, &["reciprocity"], &[]),
-    (Bug::Shifted(0.05), &["reciprocity", "goodness-of-fit", "jacobian"], &["albedo", "mis", "normalization"]),
+    (
+        Bug::Shifted(0.05),
+        &["reciprocity", "goodness-of-fit", "jacobian"],
+        &["albedo", "mis", "normalization"],
+    ),
     (Bug::Bright(60.0), &["energy"], &[]),
     (Bug::NoHorizon, &["support"], &["albedo", "mis", "reciprocity"]),
     (Bug::Stray(1e-4), &["support"], &[]),
@@ -85,7 +89,16 @@ const ROWS: &[Row] = &[
     (
         Bug::NanPdf,
         &["sanity"],
-        &["goodness-of-fit", "normalization", "mis", "albedo", "support", "returned-pdf", "weight", "jacobian"],
+        &[
+            "goodness-of-fit",
+            "normalization",
+            "mis",
+            "albedo",
+            "support",
+            "returned-pdf",
+            "weight",
+            "jacobian",
+        ],
     ),
     (Bug::Length(1.01), &["sanity"], &["goodness-of-fit", "normalization", "albedo", "mis", "support"]),
     // The sign depends on the azimuth, which isotropy sees.
@@ -134,7 +147,13 @@ fn one_percent_of_roughness_is_found_from_0_5_to_0_001() {
         });
         for result in measure(cases.into()) {
             let finding = &result.findings[0];
-            assert_eq!(finding.outcome.verdict, Verdict::Fail, "{}: {}", result.case.label(), finding.outcome.message);
+            assert_eq!(
+                finding.outcome.verdict,
+                Verdict::Fail,
+                "{}: {}",
+                result.case.label(),
+                finding.outcome.message
+            );
             assert_eq!(finding.attempts.len(), 2, "a failure is confirmed");
             assert!(finding.attempts[0].samples <= 1 << 20);
         }
@@ -212,7 +231,10 @@ fn panics_and_hangs_are_errors_of_their_case_alone() {
     ]);
     assert_eq!(results.len(), 3);
     let panicked = told(&results[..1], Verdict::Error);
-    assert!(panicked.iter().all(|m| m.contains("index out of bounds in the test's sampler")), "{panicked:#?}");
+    assert!(
+        panicked.iter().all(|m| m.contains("index out of bounds in the test's sampler")),
+        "{panicked:#?}"
+    );
     // What does not need the sampler was measured all the same.
     assert!(verdicts(&results[..1])[&Verdict::Pass].contains("reciprocity"));
     let hung = told(&results[1..2], Verdict::Error);

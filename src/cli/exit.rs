@@ -73,7 +73,7 @@ mod tests {
     use crate::registry::Registry;
     use crate::suite::{Overrides, load};
 
-    fn results(verdicts: &[Verdict]) -> Results {
+    fn results(verdicts: &[Verdict]) -> Results<'static> {
         let text = "[suite]\ntheta = 30\nphi = 17\n[[subject]]\nuse = 'lambert'";
         let plan = load("t", text, &Registry::builtin(), &Overrides::default()).ok().unwrap().plan;
         let finding = |v: &Verdict| Finding {

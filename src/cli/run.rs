@@ -5,8 +5,8 @@ use super::error::CliError;
 use super::exit::Exit;
 use super::output::{emit, tell};
 use super::progress::Progress;
-use crate::registry::{Registry, nearest};
 use crate::engine::{self, Event, Options};
+use crate::registry::{Registry, nearest};
 use crate::report::{
     FileError, Files, Look, REPORT, Report, draw_results, evidence_of, summary, write_evidence, write_report,
 };

@@ -126,7 +126,7 @@ fn slopes(meter: &Meter, setup: &Setup) -> Result<Vec<Point>, Halt> {
     let centres: Vec<Direction> = samples.wi.iter().step_by(1 + 4 * d).copied().collect();
     meter.pdf(setup.wo, &centres, setup.transport, &mut density)?;
     let mut points = Vec::new();
-    for k in 0..POINTS {
+    for (k, pdf) in density.into_iter().enumerate() {
         let first = k * (1 + 4 * d);
         let usable = (first..first + 1 + 4 * d)
             .all(|r| samples.lobe[r].is_continuous() && samples.lobe[r] == samples.lobe[first]);
@@ -146,7 +146,7 @@ fn slopes(meter: &Meter, setup: &Setup) -> Result<Vec<Point>, Halt> {
             .collect();
         if rough < ROUGH {
             let row = &u[first * d..(first + 1) * d];
-            points.push(Point { u: row.to_vec(), wi: samples.wi[first], pdf: density[k], slopes });
+            points.push(Point { u: row.to_vec(), wi: samples.wi[first], pdf, slopes });
         }
     }
     Ok(points)

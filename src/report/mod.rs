@@ -1,7 +1,7 @@
 //! Events and results to terminal, JSON and SVG.
 
-mod build;
 mod axes;
+mod build;
 mod colours;
 mod curves;
 mod disc;

@@ -144,7 +144,8 @@ pub fn evidence(subject: &str, theta: f64, phi: f64, claimed: Lobe, sampled: Lob
         draws: vec![draws],
         reference: None,
         evaluations: Evaluations::default(),
-        halt: None,
+        halts: Vec::new(),
+        corners: None,
     }
 }
 

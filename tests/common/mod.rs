@@ -209,7 +209,8 @@ impl Bsdf for Ggx {
             Bug::MirroredShare(share) if u[2] < share => {
                 let across = Direction::new(-wo.y, wo.x, 0.0);
                 let length = across.length();
-                let across = if length > 0.0 { across * (1.0 / length) } else { Direction::new(0.0, 1.0, 0.0) };
+                let across =
+                    if length > 0.0 { across * (1.0 / length) } else { Direction::new(0.0, 1.0, 0.0) };
                 let off = wi.dot(across).abs();
                 wi = wi - across * (wi.dot(across)) + across * off;
             }
