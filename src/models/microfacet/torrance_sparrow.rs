@@ -190,6 +190,7 @@ impl Bsdf for TorranceSparrow {
         }
     }
 
+    #[inline]
     fn eval(&self, wo: Direction, wi: Direction, _: Transport) -> Spectrum {
         let Some((m, om)) = half_vector(wo, wi) else {
             return Spectrum::zero(self.channels());
@@ -201,6 +202,7 @@ impl Bsdf for TorranceSparrow {
         self.reflected(om, d * self.geometry(wo, wi, m, om))
     }
 
+    #[inline]
     fn pdf(&self, wo: Direction, wi: Direction, _: Transport) -> f64 {
         let Some((m, om)) = half_vector(wo, wi) else {
             return 0.0;
@@ -209,6 +211,7 @@ impl Bsdf for TorranceSparrow {
         if d == 0.0 { 0.0 } else { d * self.density_factor(wo, m, om) }
     }
 
+    #[inline]
     fn sample(&self, wo: Direction, u: &[f64], _: Transport) -> Option<Sample> {
         if wo.z <= 0.0 {
             return None;
