@@ -34,21 +34,25 @@ impl Lobe {
     pub const DISCRETE_TRANSMISSION: Self = Self(2 | 16);
 
     /// Whether there is a sample at all.
+    #[inline]
     pub fn is_valid(self) -> bool {
         self != Self::NONE
     }
 
     /// Whether the sample is one of a discrete lobe.
+    #[inline]
     pub fn is_discrete(self) -> bool {
         self.contains(Self::DISCRETE)
     }
 
     /// Whether the sample is of a continuous lobe.
+    #[inline]
     pub fn is_continuous(self) -> bool {
         self.is_valid() && !self.is_discrete()
     }
 
     /// Whether all flags of `other` are set.
+    #[inline]
     pub fn contains(self, other: Self) -> bool {
         self.0 & other.0 == other.0
     }
@@ -120,16 +124,19 @@ impl Samples {
     }
 
     /// Number of rows.
+    #[inline]
     pub fn len(&self) -> usize {
         self.lobe.len()
     }
 
     /// Whether there is no row.
+    #[inline]
     pub fn is_empty(&self) -> bool {
         self.lobe.is_empty()
     }
 
     /// Appends one draw. The weight must have `self.channels` values.
+    #[inline]
     pub fn push(&mut self, sample: Option<Sample>) {
         match sample {
             Some(s) => {
@@ -148,6 +155,7 @@ impl Samples {
     }
 
     /// Weights of row `k`, one a channel.
+    #[inline]
     pub fn weight_of(&self, k: usize) -> &[f64] {
         &self.weight[k * self.channels..(k + 1) * self.channels]
     }

@@ -15,6 +15,7 @@ pub struct Spectrum {
 
 impl Spectrum {
     /// The same `value` in each of `channels` channels (at most [`MAX_CHANNELS`]).
+    #[inline]
     pub fn uniform(channels: usize, value: f64) -> Self {
         assert!(
             (1..=MAX_CHANNELS).contains(&channels),
@@ -24,11 +25,13 @@ impl Spectrum {
     }
 
     /// Zero in each of `channels` channels.
+    #[inline]
     pub fn zero(channels: usize) -> Self {
         Self::uniform(channels, 0.0)
     }
 
     /// Channel `c` holds `value(c)`.
+    #[inline]
     pub fn from_fn(channels: usize, mut value: impl FnMut(usize) -> f64) -> Self {
         let mut spectrum = Self::zero(channels);
         for (c, v) in spectrum.iter_mut().enumerate() {
@@ -38,6 +41,7 @@ impl Spectrum {
     }
 
     /// Channel by channel.
+    #[inline]
     pub fn map(mut self, mut f: impl FnMut(f64) -> f64) -> Self {
         for v in self.iter_mut() {
             *v = f(*v);
@@ -46,6 +50,7 @@ impl Spectrum {
     }
 
     /// Arithmetic mean over the channels.
+    #[inline]
     pub fn mean(&self) -> f64 {
         self.iter().sum::<f64>() / self.channels as f64
     }
@@ -53,12 +58,14 @@ impl Spectrum {
 
 impl From<f64> for Spectrum {
     /// One channel.
+    #[inline]
     fn from(value: f64) -> Self {
         Self::uniform(1, value)
     }
 }
 
 impl From<&[f64]> for Spectrum {
+    #[inline]
     fn from(values: &[f64]) -> Self {
         Self::from_fn(values.len(), |c| values[c])
     }
@@ -66,12 +73,14 @@ impl From<&[f64]> for Spectrum {
 
 impl Deref for Spectrum {
     type Target = [f64];
+    #[inline]
     fn deref(&self) -> &[f64] {
         &self.values[..self.channels]
     }
 }
 
 impl DerefMut for Spectrum {
+    #[inline]
     fn deref_mut(&mut self) -> &mut [f64] {
         &mut self.values[..self.channels]
     }
@@ -79,6 +88,7 @@ impl DerefMut for Spectrum {
 
 impl Mul<f64> for Spectrum {
     type Output = Self;
+    #[inline]
     fn mul(self, scale: f64) -> Self {
         self.map(|v| v * scale)
     }

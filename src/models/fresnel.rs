@@ -7,6 +7,7 @@
 
 /// cos θt by Snell's law of light that comes in at `cos_i` and passes into a
 /// medium `eta` times as dense; `None` where it is totally reflected.
+#[inline]
 pub fn refracted_cosine(cos_i: f64, eta: f64) -> Option<f64> {
     // η² cos²θt = η² − 1 + cos²θi, without forming 1 − cos².
     let g2 = (eta - 1.0) * (eta + 1.0) + cos_i * cos_i;
@@ -15,6 +16,7 @@ pub fn refracted_cosine(cos_i: f64, eta: f64) -> Option<f64> {
 
 /// Reflectance of a dielectric interface in [0, 1]; `eta` > 0 is the index
 /// beyond over the index on the incident side.
+#[inline]
 pub fn dielectric(cos_i: f64, eta: f64) -> f64 {
     if eta == 1.0 {
         return 0.0;
@@ -33,6 +35,7 @@ pub fn dielectric(cos_i: f64, eta: f64) -> f64 {
 }
 
 /// Reflectance of a conductor of complex index n + ik seen from vacuum.
+#[inline]
 pub fn conductor(cos_i: f64, n: f64, k: f64) -> f64 {
     let cos2 = cos_i * cos_i;
     let sin2 = 1.0 - cos2;
@@ -57,6 +60,7 @@ pub fn conductor(cos_i: f64, n: f64, k: f64) -> f64 {
 /// Schlick's approximation F₀ + (1 − F₀)(1 − cos θ)⁵ (C. Schlick, *An
 /// inexpensive BRDF model for physically-based rendering*, 1994), with the
 /// reflectance `f0` at normal incidence in [0, 1].
+#[inline]
 pub fn schlick(cos_i: f64, f0: f64) -> f64 {
     let m = 1.0 - cos_i;
     let m2 = m * m;

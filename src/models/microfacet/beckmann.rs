@@ -3,6 +3,7 @@
 use super::Roughness;
 use crate::bsdf::Direction;
 use std::f64::consts::PI;
+use std::sync::LazyLock;
 
 /// Gaussian slopes (P. Beckmann and A. Spizzichino, *The Scattering of
 /// Electromagnetic Waves from Rough Surfaces*, 1963; R. L. Cook and K. E.
@@ -73,33 +74,93 @@ fn gaussian_slope(u: f64) -> f64 {
 }
 
 /// The slope p > −z/t with a density like (z + t p) exp(−p²) below which is the
-/// share `u`; (t, z) is a unit vector. Halley's method inside a bracket.
+/// share `u`; (t, z) is a unit vector.
+#[inline]
 fn visible_slope(z: f64, t: f64, u: f64) -> f64 {
     if t == 0.0 {
         return gaussian_slope(u);
     }
+    search(z, t, u, START.at(z, t, u))
+}
+
+/// As [`visible_slope`], from `p` by a method of third order inside a bracket.
+fn search(z: f64, t: f64, u: f64, mut p: f64) -> f64 {
     // Beyond 6.2 there is less than the smallest step of u.
     let (mut low, mut high) = ((-z / t).max(-6.2), 6.2);
     let wanted = (1.0 - u) * (z + tail(t, z, z / t));
-    // Exact for a view along the normal and along the horizon.
-    let mut p = z * gaussian_slope(u) + (1.0 - z) * (-(-u).ln_1p()).sqrt();
     for _ in 0..100 {
         p = if p > low && p < high { p } else { 0.5 * (low + high) };
-        let excess = tail(t, -z, p) - wanted;
+        let decay = (-p * p).exp();
+        let excess = 0.5 * (t * decay / PI.sqrt() + z * libm::erfc(p)) - wanted;
         if excess > 0.0 {
             low = p;
         } else {
             high = p;
         }
         let visible = z + t * p;
-        let newton = excess * PI.sqrt() / (visible * (-p * p).exp());
-        let step = newton / (1.0 + 0.5 * newton * (t / visible - 2.0 * p));
+        let newton = excess * PI.sqrt() / (visible * decay);
+        // First and second derivative of the density over it: Halley's step
+        // with the next term of the inverse series.
+        let ratio = t / visible;
+        let (first, second) = (ratio - 2.0 * p, 4.0 * p * p - 2.0 - 4.0 * p * ratio);
+        let half = 0.5 * newton * first;
+        let third = newton * newton * (0.25 * first * first - second / 6.0);
+        let step = newton / (1.0 + half - third.clamp(-0.5, 0.5));
         p += step;
-        if step.abs() <= 1e-15 * (1.0 + p.abs()) || high - low <= 1e-15 {
+        // The next step would be like the fourth power of this one.
+        if (step * (first.abs() + 1.0)).abs() <= SMALL_STEP || high - low <= 1e-15 {
             break;
         }
     }
     if p.is_finite() { p.clamp(low, high) } else { low }
+}
+
+/// A step after which [`search`] is at rounding.
+const SMALL_STEP: f64 = 1e-4;
+
+/// Slopes to start from, linear between places in z/(z + t) and in
+/// √(−ln(1 − u)), which is the slope itself at the horizon.
+struct Start {
+    /// Rows of one z/(z + t), [`STEPS_SHARE`] + 1 each.
+    slopes: Vec<f64>,
+}
+
+/// Steps in z/(z + t) and in √(−ln(1 − u)) up to 6.2: with as many, one step of
+/// [`search`] is enough for most u.
+const STEPS_VIEW: usize = 64;
+const STEPS_SHARE: usize = 256;
+const SHARE_SCALE: f64 = STEPS_SHARE as f64 / 6.2;
+
+static START: LazyLock<Start> = LazyLock::new(Start::new);
+
+impl Start {
+    fn new() -> Self {
+        let row = |k: usize| {
+            let view = (k as f64 / STEPS_VIEW as f64).min(1.0 - 1e-9);
+            let length = view.hypot(1.0 - view);
+            let (z, t) = (view / length, (1.0 - view) / length);
+            (0..=STEPS_SHARE).map(move |j| {
+                let r = j as f64 / SHARE_SCALE;
+                let u = (-(-r * r).exp_m1()).clamp(1e-6, 1.0 - f64::EPSILON);
+                search(z, t, u, z * gaussian_slope(u) + (1.0 - z) * r)
+            })
+        };
+        Self { slopes: (0..=STEPS_VIEW).flat_map(row).collect() }
+    }
+
+    #[inline]
+    fn at(&self, z: f64, t: f64, u: f64) -> f64 {
+        let view = z / (z + t) * STEPS_VIEW as f64;
+        let share = (-(-u).ln_1p()).sqrt() * SHARE_SCALE;
+        let (k, j) = ((view as usize).min(STEPS_VIEW - 1), (share as usize).min(STEPS_SHARE - 1));
+        let x = share - j as f64;
+        let row = |k: usize| {
+            let s = &self.slopes[k * (STEPS_SHARE + 1) + j..][..2];
+            s[0] + x * (s[1] - s[0])
+        };
+        let (a, b) = (row(k), row(k + 1));
+        a + (view - k as f64) * (b - a)
+    }
 }
 
 #[cfg(test)]

@@ -37,6 +37,24 @@ pub(super) fn sum(n: usize, x: f64, c: impl Fn(usize) -> f64) -> f64 {
     c(0) + x * a - b
 }
 
+/// Coefficients of 1, x, x², … of Σ c_k T_k(x). For short or fast falling
+/// series: the largest grows by 1 + √2 a degree.
+pub(super) fn powers(c: &[f64]) -> Vec<f64> {
+    // Clenshaw's recurrence on polynomials.
+    let n = c.len();
+    let (mut a, mut b) = (vec![0.0; n], vec![0.0; n]);
+    for k in (0..n).rev() {
+        let factor = if k == 0 { 1.0 } else { 2.0 };
+        let mut next: Vec<f64> = b.iter().map(|b| -b).collect();
+        next[0] += c[k];
+        for i in 1..n {
+            next[i] += factor * a[i - 1];
+        }
+        (a, b) = (next, a);
+    }
+    a
+}
+
 #[cfg(test)]
 mod tests {
     use super::*;
@@ -49,5 +67,12 @@ mod tests {
             let x = f64::from(i) / 50.0 - 1.0;
             assert!((sum(c.len(), x, |k| c[k]) - f(x)).abs() < 1e-14);
         }
+    }
+
+    #[test]
+    fn powers_of_chebyshev_polynomials() {
+        assert_eq!(powers(&[1.0, 0.0, 0.0, 2.0]), [1.0, -6.0, 0.0, 8.0]);
+        assert_eq!(powers(&[0.0, 0.0, 0.0, 0.0, 1.0]), [1.0, 0.0, -8.0, 0.0, 8.0]);
+        assert_eq!(powers(&[3.0]), [3.0]);
     }
 }

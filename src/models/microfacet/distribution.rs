@@ -31,6 +31,7 @@ impl Distribution {
     }
 
     /// The roughness.
+    #[inline]
     pub fn alpha(&self) -> Roughness {
         match self {
             Self::Ggx(d) => d.alpha,
@@ -62,16 +63,19 @@ impl Distribution {
     }
 
     /// Smith's Λ(w) (B. G. Smith 1967): backfacing area over cos θ.
+    #[inline]
     pub fn lambda(&self, w: Direction) -> f64 {
         self.backfacing_area(w) / w.z
     }
 
     /// Smith's masking G1(w) = 1/(1 + Λ).
+    #[inline]
     pub fn g1(&self, w: Direction) -> f64 {
         w.z / (w.z + self.backfacing_area(w))
     }
 
     /// A normal with density D cos θ.
+    #[inline]
     pub fn sample(&self, u: &[f64]) -> Direction {
         match self {
             Self::Ggx(d) => d.sample(u),
@@ -93,6 +97,7 @@ impl Distribution {
 
     /// Density of normals visible from `wo` under Smith's masking per
     /// steradian: G1 max(0, wo·m) D/cos θo.
+    #[inline]
     pub fn visible_density(&self, wo: Direction, m: Direction) -> f64 {
         self.density(m) * wo.dot(m).max(0.0) / (wo.z + self.backfacing_area(wo))
     }

@@ -34,6 +34,7 @@ impl Ggx {
     }
 
     /// A normal with density D cos θ (Walter et al. 2007, eq. 35).
+    #[inline]
     pub fn sample(&self, u: &[f64]) -> Direction {
         let r = u[0].sqrt();
         let (sin, cos) = (2.0 * PI * u[1]).sin_cos();

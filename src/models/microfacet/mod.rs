@@ -1,6 +1,7 @@
 //! Rough surfaces as many small facets: distributions of normals and the
 //! models made of them, one concept a file.
 
+mod area;
 mod beckmann;
 mod chebyshev;
 mod distribution;

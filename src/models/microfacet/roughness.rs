@@ -15,11 +15,13 @@ pub struct Roughness {
 
 impl Roughness {
     /// The same `alpha` in all azimuths.
+    #[inline]
     pub fn isotropic(alpha: f64) -> Self {
         Self { x: alpha, y: alpha }
     }
 
     /// Whether both are equal.
+    #[inline]
     pub fn is_isotropic(self) -> bool {
         self.x == self.y
     }

@@ -140,26 +140,32 @@ impl TorranceSparrow {
         }
     }
 
-    /// G2/(4 cos θo cos θi), finite up to the horizon; `om` = wo·m.
+    /// The area by which Smith's functions mask `w`; not used by grooves.
     #[inline]
-    fn geometry(&self, wo: Direction, wi: Direction, m: Direction, om: f64) -> f64 {
+    fn masked_area(&self, w: Direction) -> f64 {
         match self.masking {
-            Masking::Smith => {
-                let (o, i) = (self.distribution.backfacing_area(wo), self.distribution.backfacing_area(wi));
-                0.25 / (wo.z * wi.z + o * wi.z + i * wo.z)
-            }
+            Masking::Smith => self.distribution.backfacing_area(w),
+            Masking::VCavity => 0.0,
+        }
+    }
+
+    /// G2/(4 cos θo cos θi), finite up to the horizon; `om` = wo·m, `o` the
+    /// masked area of wo.
+    #[inline]
+    fn geometry(&self, wo: Direction, wi: Direction, m: Direction, om: f64, o: f64) -> f64 {
+        match self.masking {
+            Masking::Smith => 0.25 / (wo.z * wi.z + o * wi.z + self.masked_area(wi) * wo.z),
             Masking::VCavity => 0.25 * v_cavity::masking_shadowing_over_cosines(wo, wi, m, om),
         }
     }
 
-    /// Density of wi over D: that of m, by Walter's Jacobian 1/(4 wo·m).
+    /// Density of wi over D: that of m, by Walter's Jacobian 1/(4 wo·m); `o`
+    /// gives the masked area of wo where it is needed.
     #[inline]
-    fn density_factor(&self, wo: Direction, m: Direction, om: f64) -> f64 {
+    fn density_factor(&self, wo: Direction, m: Direction, om: f64, o: impl FnOnce() -> f64) -> f64 {
         match (self.sampling, self.masking) {
             (NormalSampling::All, _) => 0.25 * m.z / om,
-            (NormalSampling::Visible, Masking::Smith) => {
-                0.25 / (wo.z + self.distribution.backfacing_area(wo))
-            }
+            (NormalSampling::Visible, Masking::Smith) => 0.25 / (wo.z + o()),
             (NormalSampling::Visible, Masking::VCavity) => 0.25 * v_cavity::masking_over_cosine(wo, m, om),
         }
     }
@@ -191,6 +197,7 @@ impl Bsdf for TorranceSparrow {
         }
     }
 
+    #[inline]
     fn eval(&self, wo: Direction, wi: Direction, _: Transport) -> Spectrum {
         let Some((m, om)) = half_vector(wo, wi) else {
             return Spectrum::zero(self.channels());
@@ -199,17 +206,19 @@ impl Bsdf for TorranceSparrow {
         if d == 0.0 {
             return Spectrum::zero(self.channels());
         }
-        self.reflected(om, d * self.geometry(wo, wi, m, om))
+        self.reflected(om, d * self.geometry(wo, wi, m, om, self.masked_area(wo)))
     }
 
+    #[inline]
     fn pdf(&self, wo: Direction, wi: Direction, _: Transport) -> f64 {
         let Some((m, om)) = half_vector(wo, wi) else {
             return 0.0;
         };
         let d = self.distribution.density(m);
-        if d == 0.0 { 0.0 } else { d * self.density_factor(wo, m, om) }
+        if d == 0.0 { 0.0 } else { d * self.density_factor(wo, m, om, || self.masked_area(wo)) }
     }
 
+    #[inline]
     fn sample(&self, wo: Direction, u: &[f64], _: Transport) -> Option<Sample> {
         if wo.z <= 0.0 {
             return None;
@@ -226,10 +235,11 @@ impl Bsdf for TorranceSparrow {
         if om <= 0.0 || wi.z <= 0.0 {
             return None;
         }
-        // D is a factor of both f and pdf.
-        let factor = self.density_factor(wo, m, om);
+        // D is a factor of both f and pdf, and wo's masking area of both others.
+        let o = self.masked_area(wo);
+        let factor = self.density_factor(wo, m, om, || o);
         let pdf = self.distribution.density(m) * factor;
-        let weight = self.reflected(om, self.geometry(wo, wi, m, om) * wi.z / factor);
+        let weight = self.reflected(om, self.geometry(wo, wi, m, om, o) * wi.z / factor);
         // Within 1e-150 of the horizon f is beyond f64.
         let valid = pdf > 0.0 && pdf.is_finite() && weight[0].is_finite();
         valid.then_some(Sample { wi, weight, pdf, lobe: Lobe::GLOSSY_REFLECTION })
