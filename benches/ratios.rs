@@ -44,7 +44,7 @@ fn median(mut values: Vec<f64>) -> f64 {
 }
 
 /// The same functions as often as the harness called them, and nothing else.
-fn raw(subject: &TorranceSparrow, wo: Direction, calls: Evaluations, u: &[f64]) -> f64 {
+fn raw(subject: &dyn Subject, wo: Direction, calls: Evaluations, u: &[f64]) -> f64 {
     let start = Instant::now();
     let mut sum = 0.0;
     let mut samples = Samples::default();
@@ -52,16 +52,16 @@ fn raw(subject: &TorranceSparrow, wo: Direction, calls: Evaluations, u: &[f64]) 
     let mut drawn = 0;
     while drawn < calls.sample {
         samples.clear(1);
-        Subject::sample(subject, wo, u, Transport::Radiance, &mut samples).expect("it samples");
+        subject.sample(wo, u, Transport::Radiance, &mut samples).expect("it samples");
         drawn += samples.len() as u64;
     }
     let wi = samples.wi.clone();
     for _ in 0..calls.eval / wi.len() as u64 {
-        Subject::eval(subject, wo, &wi, Transport::Radiance, &mut value[..wi.len()]).expect("it evaluates");
+        subject.eval(wo, &wi, Transport::Radiance, &mut value[..wi.len()]).expect("it evaluates");
         sum += value[0];
     }
     for _ in 0..calls.pdf / wi.len() as u64 {
-        Subject::pdf(subject, wo, &wi, Transport::Radiance, &mut value[..wi.len()]).expect("it evaluates");
+        subject.pdf(wo, &wi, Transport::Radiance, &mut value[..wi.len()]).expect("it evaluates");
         sum += value[0];
     }
     std::hint::black_box(sum);

@@ -73,14 +73,23 @@ impl Sums {
         self.largest = Figure(self.largest.0.max(block.largest.0));
     }
 
-    #[inline]
-    fn add(&mut self, c: usize, value: f64) {
-        let value = value.min(LARGEST);
-        self.sum[c] += value;
-        self.square[c] += value * value;
-        if value > self.largest.0 {
-            self.largest = Figure(value);
+    /// Of rows of `channels` values, each row times its factor.
+    fn of(rows: &[f64], channels: usize, factor: impl Fn(usize) -> f64) -> Self {
+        let mut sums = Self::new(channels);
+        sums.count = (rows.len() / channels) as u64;
+        let mut largest = 0.0f64;
+        for c in 0..channels {
+            let (mut sum, mut square) = (0.0, 0.0);
+            for (k, value) in rows.iter().skip(c).step_by(channels).enumerate() {
+                let value = (value * factor(k)).min(LARGEST);
+                sum += value;
+                square += value * value;
+                largest = largest.max(value);
+            }
+            (sums.sum[c], sums.square[c]) = (sum, square);
         }
+        sums.largest = Figure(largest);
+        sums
     }
 
     /// Mean and variance of a channel.
@@ -121,13 +130,28 @@ pub struct Draws {
     pub serial: Vec<u64>,
 }
 
-/// Density of the cosine distribution that MIS is tried with, over the sides
-/// where light may leave.
-pub fn cosine_density(setup: &Setup, wi: Direction) -> f64 {
-    let reflects = setup.claims.reflective && wi.same_side(setup.wo);
-    let transmits = setup.claims.transmissive && wi.z * setup.wo.z < 0.0;
-    let sides = f64::from(u8::from(setup.claims.reflective) + u8::from(setup.claims.transmissive));
-    if reflects || transmits { wi.abs_cos_theta() / (PI * sides) } else { 0.0 }
+/// The cosine distribution that MIS is tried with, over the sides where light
+/// may leave: density per unit of cos θ, towards the front and the back.
+#[derive(Clone, Copy, Debug)]
+pub struct CosineDensity {
+    front: f64,
+    back: f64,
+}
+
+impl CosineDensity {
+    /// For the claims of a case.
+    pub fn new(setup: &Setup) -> Self {
+        let sides = f64::from(u8::from(setup.claims.reflective) + u8::from(setup.claims.transmissive));
+        let side = |claimed: bool| if claimed { 1.0 / (PI * sides) } else { 0.0 };
+        let (same, other) = (side(setup.claims.reflective), side(setup.claims.transmissive));
+        if setup.wo.z > 0.0 { Self { front: same, back: other } } else { Self { front: other, back: same } }
+    }
+
+    /// The density at `wi` in sr⁻¹.
+    #[inline]
+    pub fn at(&self, wi: Direction) -> f64 {
+        if wi.z > 0.0 { self.front * wi.z } else { -self.back * wi.z }
+    }
 }
 
 /// A direction of that distribution.
@@ -149,6 +173,7 @@ struct Scratch {
     samples: Samples,
     points: Vec<[f64; 2]>,
     leaves: Vec<u32>,
+    balance: Vec<f64>,
     value: Vec<f64>,
     density: Vec<f64>,
     lights: Vec<Direction>,
@@ -212,7 +237,7 @@ impl Draws {
     ) -> Result<(), Halt> {
         let stage = if self.attempt == 0 { "draws" } else { "confirmation" };
         let mut stream = setup.key.with("stage", stage).block(self.samples / BLOCK);
-        let Scratch { u, samples, points, leaves, value, density, lights } = scratch;
+        let Scratch { u, samples, points, leaves, balance, value, density, lights } = scratch;
         u.resize(BLOCK as usize * meter.dimensions(), 0.0);
         stream.fill(meter.coarse_u(), u);
         meter.sample(setup.wo, u, setup.transport, samples)?;
@@ -221,59 +246,51 @@ impl Draws {
         points.extend(samples.wi.iter().map(|wi| partition.chart().to_point(*wi)));
         partition.locate_all(points, leaves);
 
-        let channels = samples.channels;
-        let mut weight = Sums::new(channels);
-        let mut mis = Sums::new(channels);
-        (weight.count, mis.count) = (BLOCK, BLOCK);
+        let cosine = CosineDensity::new(setup);
+        let row = |k: usize| &u[k * meter.dimensions()..(k + 1) * meter.dimensions()];
+        balance.clear();
         let mut previous: Option<u8> = None;
         for k in 0..samples.len() {
             let lobe = samples.lobe[k];
-            if !lobe.is_valid() {
-                self.none += 1;
+            let (wi, pdf) = (samples.wi[k], samples.pdf[k]);
+            // Weights of no sample are 0, and the discrete are met by no cosine.
+            balance.push(if lobe.is_continuous() { pdf / (pdf + cosine.at(wi)) } else { 1.0 });
+            if !lobe.is_continuous() {
+                if lobe.is_valid() {
+                    self.add_discrete(setup, wi, lobe, pdf, samples.weight_of(k));
+                } else {
+                    self.none += 1;
+                }
                 continue;
             }
-            let (wi, pdf) = (samples.wi[k], samples.pdf[k]);
-            let weights = &samples.weight[k * channels..(k + 1) * channels];
-            let heaviest = weight.largest.0;
-            let mut balance = 1.0;
-            if lobe.is_discrete() {
-                self.add_discrete(setup, wi, lobe, pdf, weights);
-                previous = None;
-            } else {
-                let leaf = leaves[k] as usize;
-                self.counts[leaf] += 1;
-                if pdf_of_leaf[leaf] == 0.0 {
-                    let there = density_near(meter, setup, wi)?;
-                    self.zero_pdf.look(if there > 0.0 { 0.0 } else { 1.0 }, || {
-                        Place::pair(setup.wo, wi)
-                            .drawn_by(&u[k * meter.dimensions()..][..meter.dimensions()])
-                            .value("pdf", 0.0)
-                            .value("sample.pdf", pdf)
-                    });
+            let leaf = leaves[k] as usize;
+            self.counts[leaf] += 1;
+            if pdf_of_leaf[leaf] == 0.0 {
+                let there = density_near(meter, setup, wi)?;
+                self.zero_pdf.look(if there > 0.0 { 0.0 } else { 1.0 }, || {
+                    Place::pair(setup.wo, wi).drawn_by(row(k)).value("pdf", 0.0).value("sample.pdf", pdf)
+                });
+            }
+            let cell = serial_cell[leaf];
+            previous = match previous {
+                Some(before) => {
+                    self.serial[usize::from(before) * SERIAL + usize::from(cell)] += 1;
+                    None
                 }
-                balance = pdf / (pdf + cosine_density(setup, wi));
-                let cell = serial_cell[leaf];
-                previous = match previous {
-                    Some(before) => {
-                        self.serial[usize::from(before) * SERIAL + usize::from(cell)] += 1;
-                        None
-                    }
-                    None => Some(cell),
-                };
-            }
-            for (c, w) in weights.iter().enumerate() {
-                weight.add(c, *w);
-                mis.add(c, w * balance);
-            }
-            let top = weight.largest.0;
-            if top > heaviest && top > self.weight.largest.0 {
-                let place =
-                    Place::pair(setup.wo, wi).drawn_by(&u[k * meter.dimensions()..][..meter.dimensions()]);
-                self.heaviest = Some(place.value("weight", top).value("sample.pdf", pdf));
-            }
+                None => Some(cell),
+            };
+        }
+        let channels = samples.channels;
+        let weight = Sums::of(&samples.weight, channels, |_| 1.0);
+        if weight.largest.0 > self.weight.largest.0 {
+            let heaviest = samples.weight.iter().position(|w| w.min(LARGEST) == weight.largest.0);
+            self.heaviest = heaviest.map(|at| at / channels).map(|k| {
+                let place = Place::pair(setup.wo, samples.wi[k]).drawn_by(row(k));
+                place.value("weight", weight.largest.0).value("sample.pdf", samples.pdf[k])
+            });
         }
         self.weight.append(&weight);
-        self.mis_sampler.append(&mis);
+        self.mis_sampler.append(&Sums::of(&samples.weight, channels, |k| balance[k]));
 
         if setup.mis {
             lights.clear();
@@ -284,15 +301,8 @@ impl Draws {
             );
             meter.eval(setup.wo, lights, setup.transport, value)?;
             meter.pdf(setup.wo, lights, setup.transport, density)?;
-            let mut mis = Sums::new(channels);
-            mis.count = lights.len() as u64;
-            for (k, wi) in lights.iter().enumerate() {
-                let total = density[k] + cosine_density(setup, *wi);
-                for c in 0..channels {
-                    mis.add(c, value[k * channels + c] * wi.abs_cos_theta() / total);
-                }
-            }
-            self.mis_cosine.append(&mis);
+            let factor = |k: usize| lights[k].abs_cos_theta() / (density[k] + cosine.at(lights[k]));
+            self.mis_cosine.append(&Sums::of(value, channels, factor));
         }
         self.samples += BLOCK;
         Ok(())

@@ -1,6 +1,6 @@
 //! Integrals of pdf and f·|cos θi| over the cells of a partition.
 
-use super::draws::cosine_density;
+use super::draws::CosineDensity;
 use super::meter::{Halt, Meter};
 use super::setup::Setup;
 use crate::bsdf::Direction;
@@ -110,6 +110,7 @@ impl Integrals {
             value: 2e-5,
             evaluations,
         };
+        let cosine = CosineDensity::new(setup);
         let mut value = Vec::new();
         let mut density = Vec::new();
         let leaf = integrate(partition, pilot, &markers, &goal, |wi, rows| {
@@ -129,7 +130,7 @@ impl Integrals {
                 let tail = &mut row[1 + 2 * channels..];
                 tail[0] = if p > 0.0 { 0.0 } else { mean };
                 tail[1] = if p > 0.0 { (top / p).min(LARGEST) } else { 0.0 };
-                let both = p + cosine_density(setup, *wi);
+                let both = p + cosine.at(*wi);
                 tail[2] = if both > 0.0 { top / both } else { 0.0 };
             }
             Ok::<_, Halt>(())

@@ -162,14 +162,17 @@ impl Pilot {
         }
     }
 
-    /// The direction that comes most often bit for bit, and its share.
+    /// The direction that comes most often bit for bit among the first
+    /// thousands, and its share.
     fn most_repeated(&self) -> Option<(Direction, f64)> {
+        let first = self.wi.iter().take(BLOCK as usize);
         let mut bits: Vec<[u64; 3]> =
-            self.wi.iter().map(|d| [d.x.to_bits(), d.y.to_bits(), d.z.to_bits()]).collect();
+            first.map(|d| [d.x.to_bits(), d.y.to_bits(), d.z.to_bits()]).collect();
+        let looked_at = bits.len() as f64;
         bits.sort_unstable();
         let longest = bits.chunk_by(|a, b| a == b).max_by_key(|run| run.len())?;
         let [x, y, z] = longest[0].map(f64::from_bits);
-        (longest.len() > 1).then(|| (Direction::new(x, y, z), longest.len() as f64 / self.wi.len() as f64))
+        (longest.len() > 1).then(|| (Direction::new(x, y, z), longest.len() as f64 / looked_at))
     }
 }
 

@@ -80,7 +80,8 @@ pub fn albedo(subject: &str, cases: &[&Evidence]) -> Option<String> {
     let mut angles: Vec<f64> = all().map(|p| p.theta).collect();
     angles.sort_by(f64::total_cmp);
     angles.dedup_by(|a, b| (*a - *b).abs() < 1e-6);
-    if angles.len() < 2 {
+    // Two points are no curve.
+    if angles.len() < 3 {
         return None;
     }
     let right = if angles.iter().any(|a| *a > 90.0) { 180.0 } else { 90.0 };

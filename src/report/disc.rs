@@ -41,6 +41,9 @@ pub fn given(evidence: &Evidence) -> String {
         Transport::Importance => ", importance",
     };
     let wo = evidence.wo;
+    if wo.x == 0.0 && wo.y == 0.0 {
+        return format!("θo = {:.4}°{mode}", Trim(wo.theta().to_degrees()));
+    }
     format!("θo = {:.4}°, φo = {:.4}°{mode}", Trim(wo.theta().to_degrees()), Trim(azimuth(wo)))
 }
 

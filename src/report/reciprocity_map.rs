@@ -19,6 +19,10 @@ const APART: f64 = 350.0;
 /// The picture of a case's pairs; `None` where none were tried.
 pub fn picture(evidence: &Evidence) -> Option<String> {
     let pairs = evidence.pairs.as_ref()?;
+    // Where there is no continuous lobe all pairs are 0 and equal.
+    if evidence.integrals.as_ref().is_some_and(|i| (0..i.value_error.len()).all(|c| i.albedo(c).0 == 0.0)) {
+        return None;
+    }
     let mut dots: Vec<(Direction, f64)> = pairs.map.clone();
     if dots.is_empty() {
         return None;

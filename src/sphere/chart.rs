@@ -49,22 +49,19 @@ impl Chart {
 
     /// The point of a direction. t = 1 − |z| is computed as (x² + y²)/(1 + |z|),
     /// which keeps all digits near the pole.
-    #[inline]
+    #[inline(always)]
     pub fn to_point(&self, d: Direction) -> Point {
-        let scale = 1.0 / (1.0 + d.z.abs()).sqrt();
-        let x = (self.cos * d.x + self.sin * d.y) * scale;
-        let y = (self.cos * d.y - self.sin * d.x) * scale;
-        let r = (x * x + y * y).sqrt().min(1.0);
+        let x = self.cos * d.x + self.sin * d.y;
+        let y = self.cos * d.y - self.sin * d.x;
+        let r = ((x * x + y * y) / (1.0 + d.z.abs())).sqrt().min(1.0);
         let along_x = x.abs() >= y.abs();
-        let (major, minor) = if along_x { (x, y) } else { (y, x) };
-        // 0/0 at the pole would be NaN.
-        let ratio = if major == 0.0 { 0.0 } else { minor / major };
-        let a = r.copysign(major);
-        let b = a * (arctangent(ratio) / FRAC_PI_4);
-        let (u, v) = if along_x { (a, b) } else { (b, a) };
+        let (major, minor) = if along_x { (x.abs(), y.abs()) } else { (y.abs(), x.abs()) };
+        let other = r * octants(minor, major);
+        let (u, v) = if along_x { (r, other) } else { (other, r) };
         // The front square is half open: its right edge stays below 1.
-        let u = (0.5 * (u + 1.0)).clamp(0.0, 1.0 - f64::EPSILON);
-        [if d.z > 0.0 { u } else { 1.0 + u }, (0.5 * (v + 1.0)).clamp(0.0, 1.0)]
+        let u = (0.5 + 0.5 * u.copysign(x)).min(1.0 - f64::EPSILON);
+        let v = (0.5 + 0.5 * v.copysign(y)).min(1.0);
+        [if d.z > 0.0 { u } else { 1.0 + u }, v]
     }
 
     /// The unit direction of a point.
@@ -111,10 +108,39 @@ impl Chart {
     }
 }
 
-/// arctan of |s| ≤ 1.
-#[inline]
-fn arctangent(s: f64) -> f64 {
-    s.atan()
+/// (4/π) arctan(√t)/√t on 0 ≤ t ≤ tan²(π/8), interpolated at 12 Chebyshev nodes in
+/// 50 digits; its error there is 1.6e-18.
+const OCTANT: [f64; 12] = [
+    1.2732395447351628,
+    -0.42441318157838487,
+    0.2546479089462799,
+    -0.18189136345129195,
+    0.1414710558636348,
+    -0.11574889314407025,
+    0.09793816295200183,
+    -0.08483533733777557,
+    0.07444476661415464,
+    -0.06410891559538259,
+    0.04833886711631351,
+    -0.022670535831656992,
+];
+
+/// (4/π) arctan(minor/major) for 0 ≤ minor ≤ major; 0 where both are 0. Without a
+/// call or a branch, since it is half of the cost of finding a cell.
+#[inline(always)]
+fn octants(minor: f64, major: f64) -> f64 {
+    // tan(π/8); beyond it arctan(s) = π/4 − arctan((1−s)/(1+s)).
+    let beyond = minor > (std::f64::consts::SQRT_2 - 1.0) * major;
+    let numerator = if beyond { minor - major } else { minor };
+    let denominator = if beyond { minor + major } else { major };
+    let s = numerator / denominator.max(f64::MIN_POSITIVE);
+    let t = s * s;
+    let t2 = t * t;
+    let t4 = t2 * t2;
+    let pair = |k: usize| OCTANT[k] + OCTANT[k + 1] * t;
+    let quad = |k: usize| pair(k) + pair(k + 2) * t2;
+    let polynomial = quad(0) + (quad(4) + quad(8) * t4) * t4;
+    (if beyond { 1.0 } else { 0.0 }) + s * polynomial
 }
 
 #[cfg(test)]
@@ -148,6 +174,15 @@ mod tests {
                 assert!((area / (h * h) / STERADIANS - 1.0).abs() < 1e-5, "at {u} {v}: {area}");
             }
         }
+    }
+
+    #[test]
+    fn octants_are_arctangents() {
+        for k in 0..=10_000 {
+            let s = f64::from(k) * 1e-4;
+            assert!((octants(s * 3.0, 3.0) - s.atan() / FRAC_PI_4).abs() < 4.5e-16, "{s}");
+        }
+        assert_eq!(octants(0.0, 0.0), 0.0);
     }
 
     #[test]

@@ -16,6 +16,10 @@ const NARROWEST: f64 = 2.0 / GRID;
 /// word.
 const FEWEST_POINTS: usize = 16;
 
+/// Searches that go down the tree side by side: enough to hide the latency of
+/// loads, few enough for the registers.
+const SIDE_BY_SIDE: usize = 8;
+
 /// A hemisphere in which the pilot has no points is cut into 2⁴ equal cells.
 const EMPTY_DEPTH: u32 = 4;
 
@@ -277,19 +281,28 @@ impl Partition {
     pub fn locate_all(&self, points: &[Point], leaves: &mut Vec<u32>) {
         leaves.clear();
         leaves.resize(points.len(), 0);
+        let (many, rest) = points.as_chunks::<SIDE_BY_SIDE>();
+        let (to_many, to_rest) = leaves.as_chunks_mut::<SIDE_BY_SIDE>();
+        for (points, leaves) in many.iter().zip(to_many) {
+            *leaves = self.locate_some(points);
+        }
+        for (point, leaf) in rest.iter().zip(to_rest) {
+            [*leaf] = self.locate_some(&[*point]);
+        }
+    }
+
+    #[inline(always)]
+    fn locate_some<const N: usize>(&self, points: &[Point; N]) -> [u32; N] {
         let nodes = &self.nodes[..];
-        for (points, leaves) in points.chunks(64).zip(leaves.chunks_mut(64)) {
-            for _ in 0..self.depth {
-                for (p, node) in points.iter().zip(leaves.iter_mut()) {
-                    let split = &nodes[*node as usize];
-                    let value = if split.axis == 0 { p[0] } else { p[1] };
-                    *node = split.child + u32::from(value >= split.at);
-                }
+        let mut at = [0u32; N];
+        for _ in 0..self.depth {
+            for (node, p) in at.iter_mut().zip(points) {
+                let split = nodes[*node as usize];
+                let value = p[(split.axis & 1) as usize];
+                *node = split.child + u32::from(value >= split.at);
             }
         }
-        for node in leaves {
-            *node = self.leaf_number[*node as usize];
-        }
+        at.map(|node| self.leaf_number[node as usize])
     }
 
     /// Sums over leaves for each node, leaves' own values at the leaves.
