@@ -34,12 +34,15 @@ impl Bsdf for NoJacobian {
 }
 
 fn main() -> ExitCode {
-    gonio::main(Registry::builtin().register(
-        Model::new("no-jacobian", "GGX whose pdf lacks 1/(4 wo·h)", |p| {
-            let distribution = Distribution::ggx(Roughness::isotropic(p.number("alpha")));
-            let masking = Masking::Smith;
-            TorranceSparrow::new(distribution, masking, Fresnel::None, NormalSampling::Visible).map(NoJacobian)
-        })
-        .number("alpha", 0.2, 1e-3..=1.0, "roughness"),
-    ))
+    gonio::main(
+        Registry::builtin().register(
+            Model::new("no-jacobian", "GGX whose pdf lacks 1/(4 wo·h)", |p| {
+                let distribution = Distribution::ggx(Roughness::isotropic(p.number("alpha")));
+                let masking = Masking::Smith;
+                TorranceSparrow::new(distribution, masking, Fresnel::None, NormalSampling::Visible)
+                    .map(NoJacobian)
+            })
+            .number("alpha", 0.2, 1e-3..=1.0, "roughness"),
+        ),
+    )
 }

@@ -56,6 +56,8 @@ fn main() {
     let small = p_values.iter().filter(|p| **p < 1e-3).count();
     let (low, high) = proportion_interval(small as u64, count as u64, 0.025);
     let (d, p) = kolmogorov_smirnov(&mut p_values);
-    println!("  {count} p-values of independent levels (fixed N, ε = 0): Kolmogorov–Smirnov D = {d:.5}, p = {p:.3}");
+    println!(
+        "  {count} p-values of independent levels (fixed N, ε = 0): Kolmogorov–Smirnov D = {d:.5}, p = {p:.3}"
+    );
     println!("  of these {small} below 1e-3: {:.2e} ({low:.2e} to {high:.2e})", small as f64 / count as f64);
 }

@@ -166,8 +166,7 @@ impl Pilot {
     /// thousands, and its share.
     fn most_repeated(&self) -> Option<(Direction, f64)> {
         let first = self.wi.iter().take(BLOCK as usize);
-        let mut bits: Vec<[u64; 3]> =
-            first.map(|d| [d.x.to_bits(), d.y.to_bits(), d.z.to_bits()]).collect();
+        let mut bits: Vec<[u64; 3]> = first.map(|d| [d.x.to_bits(), d.y.to_bits(), d.z.to_bits()]).collect();
         let looked_at = bits.len() as f64;
         bits.sort_unstable();
         let longest = bits.chunk_by(|a, b| a == b).max_by_key(|run| run.len())?;

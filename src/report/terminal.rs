@@ -292,8 +292,9 @@ fn footer(text: &mut String, report: &Report, files: &[(&str, &str)], look: Look
     }
     let cases: BTreeSet<_> = report.results.iter().map(case_of).collect();
     let run = format!(
-        "{} cases of suite {}, seed {}, {:.1} s; correct subjects fail a run with probability {}",
+        "{} {} of suite {}, seed {}, {:.1} s; correct subjects fail a run with probability {:e}",
         cases.len(),
+        if cases.len() == 1 { "case" } else { "cases" },
         report.suite,
         report.seed,
         report.duration_s,
