@@ -259,8 +259,11 @@ impl Model {
     pub fn complete(&self, given: &[(String, Value)]) -> Result<Parameters, RegistryError> {
         let mut all: BTreeMap<_, _> = self.parameters.iter().map(|p| (p.name.clone(), p.default())).collect();
         for (name, value) in given {
-            self.parameter(name)?.check(value)?;
-            all.insert(name.clone(), value.clone());
+            let parameter = self.parameter(name)?;
+            parameter.check(value)?;
+            // An option may look like a number.
+            let word = matches!(parameter.kind, Kind::Choice { .. }).then(|| Value::Text(value.to_string()));
+            all.insert(name.clone(), word.unwrap_or_else(|| value.clone()));
         }
         Ok(Parameters(all))
     }
@@ -304,7 +307,9 @@ impl std::str::FromStr for Spelling {
             let Some((key, value)) = pair.split_once('=') else {
                 return Err(RegistryError::Spelling { text: text.into(), part: pair.into() });
             };
-            let value = value.parse().map_or_else(|_| Value::Text(value.to_string()), Value::Number);
+            // `nan` and `inf` are words: no parameter takes them as numbers.
+            let number = value.parse().ok().filter(|v: &f64| v.is_finite());
+            let value = number.map_or_else(|| Value::Text(value.to_string()), Value::Number);
             parameters.push((key.to_string(), value));
         }
         Ok(Self { name: name.to_string(), parameters })

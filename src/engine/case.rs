@@ -8,6 +8,7 @@ use crate::evidence::{BLOCK, Company, Evidence, Gatherer, Halt, Measurement, Met
 use crate::statistics::budget;
 use crate::statistics::streams::StreamKey;
 use crate::suite::Case;
+use std::collections::BTreeSet;
 use std::sync::Arc;
 use std::time::Instant;
 
@@ -74,6 +75,13 @@ struct Open {
     check: &'static dyn Check,
     /// The first attempt, once it led to a suspicion.
     suspicion: Option<(Outcome, Attempt)>,
+}
+
+impl Open {
+    /// Draws at which the suspicion arose.
+    fn suspected_at(&self) -> Option<u64> {
+        Some(self.suspicion.as_ref()?.1.samples)
+    }
 }
 
 /// Runs a case. `share` is what each of its statistical tests may spend.
@@ -184,7 +192,7 @@ impl<'a> Run<'a> {
                 findings.push(finding(open.check, Outcome::skipped("not implemented"), Vec::new()));
             }
         }
-        self.judge(0, None, findings, |check| !check.needs().contains(&Measurement::Draws));
+        self.judge(0, None, findings, |open| !open.check.needs().contains(&Measurement::Draws));
         let looks = self.looks.clone();
         for (k, n) in looks.iter().enumerate() {
             if self.open.iter().all(|o| o.suspicion.is_some()) {
@@ -199,20 +207,27 @@ impl<'a> Run<'a> {
         self.gatherer.into_evidence()
     }
 
-    /// Follows suspicions with other random numbers.
+    /// Follows suspicions with other random numbers. Each check looks at
+    /// multiples of where its own suspicion arose, whatever the others do: it
+    /// decides as it would alone.
     fn confirm(&mut self, findings: &mut Vec<Finding>) {
-        let Some(first) = self.open.iter().filter_map(|o| Some(o.suspicion.as_ref()?.1.samples)).min() else {
-            return;
-        };
+        let looks: BTreeSet<u64> = self
+            .open
+            .iter()
+            .filter_map(Open::suspected_at)
+            .flat_map(|n| CONFIRMATION.map(|f| n * f))
+            .collect();
         self.terms.attempt = 1;
-        for (k, factor) in CONFIRMATION.iter().enumerate() {
-            let n = first * factor;
-            self.gatherer.draw(1, n);
-            self.terms.ln_tail = budget::look_share(self.attempt, CONFIRMATION.len(), k).ln();
-            self.terms.next = CONFIRMATION.get(k + 1).map(|f| first * f);
-            self.judge(1, Some(n), findings, |_| true);
-            if self.open.is_empty() {
-                return;
+        for n in looks {
+            for (k, factor) in CONFIRMATION.iter().enumerate() {
+                let due = |open: &Open| open.suspected_at().is_some_and(|first| first * factor == n);
+                if !self.open.iter().any(due) {
+                    continue;
+                }
+                self.gatherer.draw(1, n);
+                self.terms.ln_tail = budget::look_share(self.attempt, CONFIRMATION.len(), k).ln();
+                self.terms.next = CONFIRMATION.get(k + 1).map(|f| n / factor * f);
+                self.judge(1, Some(n), findings, due);
             }
         }
     }
@@ -223,14 +238,14 @@ impl<'a> Run<'a> {
         attempt: usize,
         drawn: Option<u64>,
         findings: &mut Vec<Finding>,
-        now: impl Fn(&dyn Check) -> bool,
+        now: impl Fn(&Open) -> bool,
     ) {
         let evidence = self.gatherer.evidence();
         let over = self.gatherer.is_over();
         let mut still_open = Vec::new();
         for mut open in std::mem::take(&mut self.open) {
             let suspected = open.suspicion.is_some();
-            if !now(open.check) || suspected != (attempt == 1) {
+            if !now(&open) || suspected != (attempt == 1) {
                 still_open.push(open);
                 continue;
             }
@@ -245,8 +260,8 @@ impl<'a> Run<'a> {
                     continue;
                 }
                 Judgement::More(_) | Judgement::Missing => {
-                    let halt = evidence.halts.first().map(|(_, h)| h.to_string());
-                    Outcome::error(halt.unwrap_or_else(|| "this could not be measured of the subject".into()))
+                    let none = || Outcome::error("this could not be measured of the subject");
+                    evidence.halts.first().map_or_else(none, |(_, halt)| halted(halt))
                 }
                 Judgement::Outcome(outcome) => *outcome,
             };

@@ -3,7 +3,7 @@
 use super::json::{AttemptRow, CheckResult, Machine, Report, SCHEMA_VERSION, SubjectId, Summary, WoAngles};
 use crate::checks::Verdict;
 use crate::engine::{CaseResult, Finding, Results};
-use crate::evidence::Figure;
+use crate::evidence::{Figure, Meter};
 use crate::suite::Plan;
 use std::f64::consts::LN_10;
 
@@ -70,11 +70,16 @@ fn row(case: &CaseResult, finding: &Finding, files: &Files) -> CheckResult {
     let outcome = &finding.outcome;
     let figure = |v: f64| Figure(v);
     let description = case.evidence.as_ref().map(|e| &e.description);
+    // The claims of a case that was not run, or was given up, are in force too.
+    let asked = || Meter::describe(&*case.case.subject).map(|d| d.claims).unwrap_or_default();
+    let name = case.case.spelling.clone();
+    let own_row = name.split(':').next() != Some(&case.case.group);
     CheckResult {
         subject: SubjectId {
-            name: case.case.spelling.clone(),
+            label: own_row.then(|| case.case.group.clone()),
+            name,
             parameters: case.case.parameters.clone(),
-            claims: description.map_or_else(|| case.case.claims.over(Default::default()), |d| d.claims),
+            claims: description.map_or_else(|| case.case.claims.over(asked()), |d| d.claims),
         },
         check: finding.check.into(),
         wo: Some(WoAngles { theta_deg: case.case.theta_deg, phi_deg: case.case.phi_deg }),

@@ -61,7 +61,7 @@ pub fn redraw(folder: &Path, report: &Report, which: Which) -> Result<usize, Fil
             let fit = rows.iter().find(|r| r.check == "goodness-of-fit");
             Pictured {
                 index: *index,
-                group: rows[0].subject.name.split(':').next().unwrap_or_default(),
+                group: rows[0].subject.group(),
                 evidence,
                 suspicious: rows.iter().any(|r| is_suspicious(r.verdict)),
                 root_d: fit.and_then(|r| r.effect.as_ref()).map(|e| e.value.0),

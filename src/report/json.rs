@@ -121,10 +121,21 @@ pub struct CheckResult {
 pub struct SubjectId {
     /// How it is written: NAME:KEY=VALUE,…
     pub name: String,
+    /// What the suite calls its row, if it has a name of its own.
+    #[serde(default, skip_serializing_if = "Option::is_none")]
+    pub label: Option<String>,
     /// All its parameters.
     pub parameters: Parameters,
     /// The claims in force.
     pub claims: Claims,
+}
+
+impl SubjectId {
+    /// Its row: the suite's label, or the name without parameters.
+    pub fn group(&self) -> &str {
+        let base = || self.name.split(':').next().unwrap_or(&self.name);
+        self.label.as_deref().unwrap_or_else(base)
+    }
 }
 
 /// A direction in degrees.

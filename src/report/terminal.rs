@@ -80,11 +80,6 @@ fn short(check: &str) -> String {
     known.to_string()
 }
 
-/// The row of a subject: its name without parameters.
-fn base(name: &str) -> &str {
-    name.split(':').next().unwrap_or(name)
-}
-
 /// A case is a subject at a direction, with evidence of its own.
 fn case_of(result: &CheckResult) -> (String, String, String) {
     let wo = result.wo.map_or(String::new(), direction);
@@ -125,7 +120,7 @@ fn matrix(text: &mut String, report: &Report, look: Look) {
     let mut worst: BTreeMap<(&str, &str), Verdict> = BTreeMap::new();
     let mut cases: BTreeMap<&str, BTreeSet<(String, String, String)>> = BTreeMap::new();
     for result in &report.results {
-        let row = base(&result.subject.name);
+        let row = result.subject.group();
         if !rows.contains(&row) {
             rows.push(row);
         }
@@ -328,6 +323,7 @@ pub(super) mod tests {
         CheckResult {
             subject: SubjectId {
                 name: name.into(),
+                label: None,
                 parameters: Parameters::default(),
                 claims: Claims::default(),
             },
