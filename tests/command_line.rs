@@ -27,8 +27,8 @@ fn own_command() -> &'static str {
         let built = cargo.current_dir(env!("CARGO_MANIFEST_DIR")).output().expect("cargo runs");
         assert!(built.status.success(), "{}", String::from_utf8_lossy(&built.stderr));
         let lines = String::from_utf8(built.stdout).unwrap();
-        let artifacts = lines.lines().filter_map(|l| serde_json::from_str::<Value>(l).ok());
-        let example = artifacts.filter(|a| a["target"]["name"] == "own_command").last();
+        let mut artifacts = lines.lines().filter_map(|l| serde_json::from_str::<Value>(l).ok());
+        let example = artifacts.rfind(|a| a["target"]["name"] == "own_command");
         example.expect("an artifact")["executable"].as_str().expect("a path").to_string()
     })
 }
@@ -117,7 +117,9 @@ impl Desk {
     /// How many whole files of evidence there are; a torn one fails the test.
     fn whole_evidence(&self, folder: &str) -> usize {
         let names = self.files(folder).into_keys().filter(|n| n.starts_with("case-"));
-        names.map(|n| read_evidence(&self.path(folder).join(n)).expect("whole evidence")).count()
+        let all: Vec<_> =
+            names.map(|n| read_evidence(&self.path(folder).join(n)).expect("whole evidence")).collect();
+        all.len()
     }
 }
 

@@ -205,7 +205,7 @@ fn reference_and_sensitivity_see_what_they_are_for() {
                 from: "0.3".into(),
                 to: variant.to_string(),
                 limit: None,
-                subject: Arc::new(Ggx::new(variant, Bug::CosineInD)),
+                build: Arc::new(move || Some(Arc::new(Ggx::new(variant, Bug::CosineInD)))),
             }],
             reference: Some(("other".into(), Arc::new(Ggx::new(reference.abs(), bug)))),
         };

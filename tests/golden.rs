@@ -116,7 +116,8 @@ fn the_comparison_sees_every_kind_of_difference_and_names_its_place() {
     };
     assert_eq!(with(&|_| ()), "");
     assert_eq!(with(&|v| v["results"][0]["p"] = (0.25 * (1.0 + 5e-10)).into()), "");
-    let cases: [(&dyn Fn(&mut Value), &str); 8] = [
+    type Change<'a> = &'a dyn Fn(&mut Value);
+    let cases: [(Change, &str); 8] = [
         (&|v| v["results"][0]["p"] = 0.250_000_001.into(), "results[0].p was 0.25 and is 0.250000001"),
         (&|v| v["results"][0]["p"] = (-0.25).into(), "results[0].p was 0.25 and is -0.25"),
         (&|v| v["summary"]["passed"] = 4.into(), "summary.passed was 3 and is 4"),

@@ -2,16 +2,13 @@
 
 use super::outcome::{Check, Effect, Judgement, Outcome, Terms, Verdict, needs_determinism};
 use crate::bsdf::Description;
-use crate::evidence::{Evidence, Limit, Measurement};
+use crate::evidence::{CHANGE, Evidence, Limit, Measurement};
 use std::collections::BTreeMap;
 
 /// Every declared parameter changes something; η → 1 reflects nothing and
 /// α → 0 gathers samples around mirror and refracted directions; front and back
 /// agree where two-sided.
 pub struct Sensitivity;
-
-/// A change below this is rounding.
-const CHANGE: f64 = 1e-9;
 
 /// Median angle off the mirror, in units of the roughness: GGX's is about 2 at
 /// normal incidence.

@@ -125,11 +125,11 @@ fn finding(check: &'static dyn Check, outcome: Outcome, attempts: Vec<Attempt>) 
 }
 
 /// A case under way.
-struct Run<'a> {
-    gatherer: Gatherer<'a>,
+struct Run<'r, 'a> {
+    gatherer: Gatherer<'r>,
     open: Vec<Open>,
     skipped: Vec<Finding>,
-    company: &'a Company<'a>,
+    company: &'r Company<'a>,
     seed: u64,
     /// What each attempt of a test may spend.
     attempt: f64,
@@ -137,8 +137,8 @@ struct Run<'a> {
     terms: Terms,
 }
 
-impl<'a> Run<'a> {
-    fn new(case: &'a Case<'a>, seed: u64, share: f64, description: Description, watch: &Arc<Watch>) -> Self {
+impl<'r, 'a> Run<'r, 'a> {
+    fn new(case: &'r Case<'a>, seed: u64, share: f64, description: Description, watch: &Arc<Watch>) -> Self {
         let mut open = Vec::new();
         let mut skipped = Vec::new();
         for check in selected(case) {

@@ -250,7 +250,7 @@ impl Draws {
         let row = |k: usize| &u[k * meter.dimensions()..(k + 1) * meter.dimensions()];
         balance.clear();
         let mut previous: Option<u8> = None;
-        for k in 0..samples.len() {
+        for (k, leaf) in leaves.iter().enumerate() {
             let lobe = samples.lobe[k];
             let (wi, pdf) = (samples.wi[k], samples.pdf[k]);
             // Weights of no sample are 0, and the discrete are met by no cosine.
@@ -263,7 +263,7 @@ impl Draws {
                 }
                 continue;
             }
-            let leaf = leaves[k] as usize;
+            let leaf = *leaf as usize;
             self.counts[leaf] += 1;
             if pdf_of_leaf[leaf] == 0.0 {
                 let there = density_near(meter, setup, wi)?;

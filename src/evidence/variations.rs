@@ -23,9 +23,13 @@ pub struct Variant<'a> {
     pub to: String,
     /// At `to`, this limit must be reached.
     pub limit: Option<Role>,
-    /// The changed subject.
-    pub subject: Arc<dyn Subject + 'a>,
+    /// Makes the changed subject; `None` where the model refuses the change. Made
+    /// when it is measured, and only if it is: some models take long to make.
+    pub build: Arc<Build<'a>>,
 }
+
+/// Makes a subject, or cannot.
+pub type Build<'a> = dyn Fn() -> Option<Arc<dyn Subject + 'a>> + Send + Sync + 'a;
 
 /// What a changed parameter did.
 #[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
@@ -61,6 +65,9 @@ pub enum Limit {
     },
 }
 
+/// A change below this is rounding.
+pub const CHANGE: f64 = 1e-9;
+
 const ROWS: usize = 128;
 const LIMIT_DRAWS: usize = 1024;
 
@@ -80,8 +87,14 @@ impl Variation {
         let own = Response::of(meter, setup, &given, &wi)?;
         let mut all = Vec::new();
         for variant in variants {
-            let description = Meter::describe(&*variant.subject)?;
-            let other = Meter::new(&*variant.subject, description, watch.clone());
+            // One value that changes something is enough; limits are for themselves.
+            let known = all.iter().any(|v: &Self| v.parameter == variant.parameter && v.change.0 > CHANGE);
+            if known && variant.limit.is_none() {
+                continue;
+            }
+            let Some(subject) = (variant.build)() else { continue };
+            let description = Meter::describe(&*subject)?;
+            let other = Meter::new(&*subject, description, watch.clone());
             let change = if other.channels() == meter.channels() && other.dimensions() == meter.dimensions() {
                 own.distance(&Response::of(&other, setup, &given, &wi)?)
             } else {

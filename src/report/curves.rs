@@ -232,13 +232,4 @@ mod tests {
         assert_eq!(p_values(&[f64::NAN]), None);
         assert!(p_values(&[0.0, 1.0]).is_some());
     }
-
-    /// Writes both to the folder that GONIO_GALLERY names, to be looked at.
-    #[test]
-    #[ignore = "for the eyes"]
-    fn gallery_to_look_at() {
-        let folder = std::env::var("GONIO_GALLERY").expect("GONIO_GALLERY names a folder");
-        std::fs::write(format!("{folder}/albedo.svg"), albedo_of_eight()).unwrap();
-        std::fs::write(format!("{folder}/p-values.svg"), uniform()).unwrap();
-    }
 }

@@ -291,15 +291,4 @@ mod tests {
         assert_eq!(residual(110.0, 100.0), 1.0);
         assert!(residual_colour(-9.0) < residual_colour(0.0) && residual_colour(9.0) == 2 + STEPS);
     }
-
-    /// Writes the gallery to the folder that GONIO_GALLERY names, to be looked at.
-    #[test]
-    #[ignore = "for the eyes"]
-    fn gallery_to_look_at() {
-        let folder = std::env::var("GONIO_GALLERY").expect("GONIO_GALLERY names a folder");
-        for (name, evidence) in gallery() {
-            let svg = picture(&evidence, Caption { root_d: Some(0.0123) }).unwrap();
-            std::fs::write(format!("{folder}/{name}.svg"), svg).unwrap();
-        }
-    }
 }

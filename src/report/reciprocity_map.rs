@@ -130,13 +130,4 @@ mod tests {
         evidence.pairs.as_mut().unwrap().map.clear();
         assert_eq!(picture(&evidence), None);
     }
-
-    /// Writes one to the folder that GONIO_GALLERY names, to be looked at.
-    #[test]
-    #[ignore = "for the eyes"]
-    fn gallery_to_look_at() {
-        let folder = std::env::var("GONIO_GALLERY").expect("GONIO_GALLERY names a folder");
-        let (_, evidence) = gallery().remove(0);
-        std::fs::write(format!("{folder}/reciprocity.svg"), picture(&evidence).unwrap()).unwrap();
-    }
 }

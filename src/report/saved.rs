@@ -95,7 +95,8 @@ pub fn write_evidence(report_dir: &Path, index: usize, evidence: &Evidence) -> R
     let json = serde_json::to_vec(evidence).map_err(not_kept)?;
     // An infinite number is written as null, and is none when it comes back.
     serde_json::from_slice::<Evidence>(&json).map_err(not_kept)?;
-    let mut packer = GzBuilder::new().mtime(0).write(Vec::new(), Compression::default());
+    // Packing is done beside the measurements; a tenth more bytes for a third of its time.
+    let mut packer = GzBuilder::new().mtime(0).write(Vec::new(), Compression::fast());
     let packed = packer.write_all(&json).and_then(|()| packer.finish());
     let packed = packed.map_err(|source| FileError::Write { path: path.clone(), source })?;
     write_whole(&path, &packed)?;

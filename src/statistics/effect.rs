@@ -200,28 +200,6 @@ mod tests {
     }
 
     #[test]
-    #[ignore = "prints timings"]
-    fn timings() {
-        use super::super::{binomial, chi_square};
-        let time = |name: &str, f: &dyn Fn() -> f64| {
-            let start = std::time::Instant::now();
-            let value = (0..20).map(|_| f()).sum::<f64>() / 20.0;
-            assert!(value.is_finite(), "{name}");
-            println!("{name}: {:?}", start.elapsed() / 20);
-        };
-        time("chi ln_sf 1023", &|| chi_square::ln_sf(1100.0, 1023.0));
-        time("chi ln_sf 1e5", &|| chi_square::ln_sf(100_003.0, 1e5));
-        time("noncentral 1023 1e4", &|| noncentral::ln_sf(11_500.0, 1023.0, 1e4));
-        time("noncentral lower 1023 1e4", &|| noncentral::ln_sf(10_500.0, 1023.0, 1e4));
-        time("noncentral 1023 1e7", &|| noncentral::ln_sf(1.0002e7, 1023.0, 1e7));
-        time("noncentral quantile", &|| noncentral::quantile(-7.0, 1023.0, 90.0));
-        time("lambda_where_sf", &|| noncentral::lambda_where_sf(1400.0, 1023.0, 0.999));
-        time("binomial 2^40 half", &|| binomial::ln_upper_tail((1 << 39) + 100_000, 1 << 40, 0.5));
-        time("binomial 1e6", &|| binomial::ln_upper_tail(500_500, 1_000_000, 0.5));
-        time("clopper 1e6", &|| binomial::proportion_interval(500_000, 1_000_000, 1e-3).0);
-    }
-
-    #[test]
     fn figures_of_the_method() {
         // 1e6 samples at 1e-6, found with 0.999: 2.0 % on 1024 cells, 1.0 % on 16 (eps = 0.3 %).
         let n = 1_000_000;

@@ -276,7 +276,7 @@ fn variants_change_what_applies_and_go_to_limits() {
 #[test]
 fn embedded_suites_expand_to_the_size_they_are_meant_to_have() {
     let registry = registry();
-    for (suite, sizes) in EMBEDDED.iter().zip([150..=200, 16..=26, 3000..=9000]) {
+    for (suite, sizes) in EMBEDDED.iter().zip([150..=200, 16..=32, 3000..=9000]) {
         SuiteFile::parse(suite.name, suite.text).unwrap_or_else(|e| panic!("{:#?}", e.lines()));
         let found = load(suite.name, suite.text, &registry, &Overrides::default());
         let plan = found.unwrap_or_else(|e| panic!("{}: {:#?}", suite.name, e.lines())).plan;

@@ -2,6 +2,7 @@
 
 use crate::evidence::Variant;
 use crate::registry::{Kind, Model, Parameter, Parameters, Role, Value};
+use std::sync::Arc;
 
 /// For each parameter that applies: other values, and its limit if it has one.
 pub(super) fn variants(model: &Model, parameters: &Parameters) -> Vec<Variant<'static>> {
@@ -10,7 +11,7 @@ pub(super) fn variants(model: &Model, parameters: &Parameters) -> Vec<Variant<'s
         for value in other_values(parameter, parameters) {
             let mut changed = parameters.clone();
             changed.0.insert(parameter.name.clone(), value);
-            all.extend(variant(model, parameters, parameter, changed, None));
+            all.push(variant(model, parameters, parameter, changed, None));
         }
     }
     all.extend(limits(model, parameters));
@@ -23,12 +24,12 @@ fn variant(
     parameter: &Parameter,
     changed: Parameters,
     limit: Option<Role>,
-) -> Option<Variant<'static>> {
+) -> Variant<'static> {
     let text = |p: &Parameters| p.0.get(&parameter.name).map(Value::to_string).unwrap_or_default();
     let (from, to) = (text(parameters), text(&changed));
-    // A model may refuse the change.
-    let subject = model.build(&changed).ok()?;
-    Some(Variant { parameter: parameter.name.clone(), from, to, limit, subject })
+    let model = model.clone();
+    let build = Arc::new(move || model.build(&changed).ok());
+    Variant { parameter: parameter.name.clone(), from, to, limit, build }
 }
 
 /// Two numbers away from the nearer end of the range, lest one of them means
@@ -59,12 +60,12 @@ fn limits(model: &Model, parameters: &Parameters) -> Vec<Variant<'static>> {
         for p in &rough {
             changed.0.extend(min(p).map(|min| (p.name.clone(), Value::Number(min))));
         }
-        all.extend(variant(model, parameters, first, changed, Some(Role::Roughness)));
+        all.push(variant(model, parameters, first, changed, Some(Role::Roughness)));
     }
     for p in model.parameters().iter().filter(with_role(Role::Eta)).filter(|p| min(p) == Some(1.0)) {
         let mut changed = parameters.clone();
         changed.0.insert(p.name.clone(), Value::Number(1.0));
-        all.extend(variant(model, parameters, p, changed, Some(Role::Eta)));
+        all.push(variant(model, parameters, p, changed, Some(Role::Eta)));
     }
     all
 }
