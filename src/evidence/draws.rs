@@ -22,6 +22,9 @@ const MOST_DISCRETE: usize = 16;
 /// Larger values count as this one, so that sums of squares stay finite.
 const LARGEST: f64 = 1e140;
 
+/// After so many samples at pdf = 0 no further one is looked at.
+const ENOUGH: u64 = 1000;
+
 /// Coarse cells of the table of serial pairs.
 pub const SERIAL: usize = 16;
 
@@ -248,6 +251,7 @@ impl Draws {
 
         let cosine = CosineDensity::new(setup);
         let row = |k: usize| &u[k * meter.dimensions()..(k + 1) * meter.dimensions()];
+        let has_pdf = meter.description.has.pdf;
         balance.clear();
         let mut previous: Option<u8> = None;
         for (k, leaf) in leaves.iter().enumerate() {
@@ -265,7 +269,8 @@ impl Draws {
             }
             let leaf = *leaf as usize;
             self.counts[leaf] += 1;
-            if pdf_of_leaf[leaf] == 0.0 {
+            let looks = has_pdf && self.zero_pdf.broken < ENOUGH;
+            if looks && pdf_of_leaf[leaf] == 0.0 {
                 let there = density_near(meter, setup, wi)?;
                 self.zero_pdf.look(if there > 0.0 { 0.0 } else { 1.0 }, || {
                     Place::pair(setup.wo, wi).drawn_by(row(k)).value("pdf", 0.0).value("sample.pdf", pdf)
