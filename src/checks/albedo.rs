@@ -48,14 +48,16 @@ pub(super) fn judge_means(
     terms: &Terms,
 ) -> Judgement {
     let correction = (means.len() as f64).ln();
+    let lit = |m: &Mean| m.expected != 0.0 || m.found != 0.0;
     let (worst, ln_p) = means
         .iter()
         .enumerate()
+        .filter(|(_, mean)| lit(mean))
         .map(|(c, mean)| (c, (mean.ln_p(terms.mean_tolerance) + correction).min(0.0)))
         .min_by(|a, b| a.1.total_cmp(&b.1))
         .unwrap_or((0, 0.0));
     let mean = &means[worst];
-    if mean.expected == 0.0 && mean.found == 0.0 {
+    if !lit(mean) {
         return Outcome::skipped("there is no light to account for: both are 0").into();
     }
     let ends = bernstein_deviation(mean.variance, mean.bound, 1, 0.05f64.ln());

@@ -1,6 +1,6 @@
 //! Equal inputs give equal outputs, and successive samples are independent.
 
-use super::outcome::{Check, Effect, Judgement, Outcome, Terms, Verdict, needs_determinism};
+use super::outcome::{Check, Effect, Judgement, Outcome, POWER, Terms, Verdict, needs_determinism};
 use crate::bsdf::Description;
 use crate::evidence::{Evidence, Measurement, SERIAL};
 use crate::statistics::{effect, noncentral};
@@ -73,7 +73,15 @@ impl Check for Determinism {
             return Outcome { verdict: Verdict::Fail, message, ..outcome }.into();
         }
         let message = format!("{held}; {pairs} successive pairs are independent");
-        terms.settle(Outcome { message, ..outcome })
+        let threshold = effect::tolerance_threshold(dof, pairs, terms.tolerance, terms.ln_tail);
+        let limit = effect::detection_limit(dof, pairs, threshold, POWER);
+        let outcome = Outcome { message, detection_limit: Some(limit), ..outcome };
+        // The suite's `detect` is of errors of the distribution; dependence is
+        // looked for beside, as far as the same draws show it.
+        match terms.next {
+            Some(next) => Judgement::More(next),
+            None => outcome.into(),
+        }
     }
 }
 

@@ -92,7 +92,13 @@ impl Check for DiscreteLobes {
             }
             let right = match (reflects, evidence.description.claims.eta) {
                 (true, _) => Some(wo.mirrored()),
-                (false, Some(eta)) => refracted(wo, eta),
+                (false, Some(eta)) => match refracted(wo, eta) {
+                    None => {
+                        let message = "a discrete lobe is transmitted beyond the critical angle";
+                        return fail(message.into(), Some(place()), None);
+                    }
+                    right => right,
+                },
                 (false, None) => None,
             };
             if let Some(right) = right {

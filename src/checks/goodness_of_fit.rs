@@ -7,7 +7,7 @@ use crate::bsdf::Description;
 use crate::evidence::{Draws, Evidence, Measurement, Place};
 use crate::sphere::Partition;
 use crate::statistics::multiscale::{
-    Haar, MIN_EXPECTED, Pooled, Tree, haar_largest, haar_levels, level_cut, pearson,
+    Cell, Haar, MIN_EXPECTED, Pooled, Tree, haar_largest, haar_levels, level_cut, pearson,
 };
 use crate::statistics::{binomial, chi_square, effect, noncentral};
 
@@ -179,9 +179,9 @@ pub(super) fn against(
     let mut worst_level = (0.0, 0.0, 0.0f64);
     for &(x2, dof) in &raw_levels {
         let beyond = x2 > effect::normal_bound(dof, n, terms.tolerance, smallest, ln_part);
-        let ln_p = noncentral::ln_sf(x2, dof, lambda);
         // Where the error may sit in one small cell, the normal bound decides.
-        let ln_p = if beyond { ln_p } else { ln_p.max(ln_part) };
+        let ln_p = noncentral::ln_sf(x2, dof, lambda);
+        let ln_p = if beyond { ln_p } else { ln_p.max(ln_part + 1.0) };
         if ln_p < worst_level.2 || worst_level.1 == 0.0 {
             worst_level = (x2, dof, ln_p);
         }
@@ -204,11 +204,7 @@ pub(super) fn against(
         ..Outcome::new(Verdict::Pass, String::new())
     };
     if ln_p < terms.ln_tail {
-        let worst = largest.filter(|h| h.node >= OUTER).map(|h| {
-            let cell = partition.node_cell(h.node - OUTER);
-            let wi = partition.chart().to_direction(cell.at(0.5, 0.5));
-            Place::pair(evidence.wo, wi).value("σ", h.z)
-        });
+        let worst = worst_cell(evidence, partition, &raw);
         let strict = format!("at ε = 0, p = {} raw and {} for the shape alone", power(raw_p), power(shape_p));
         let message = format!(
             "samples are off pdf by {} RMS ({} to {}) on {:.0} cells; {}; {strict}",
@@ -244,6 +240,17 @@ pub(super) fn against(
         percent(limit)
     );
     terms.settle(Outcome { message, detection_limit: Some(limit), ..outcome })
+}
+
+/// The cell that deviates most, with its counts.
+fn worst_cell(evidence: &Evidence, partition: &Partition, tree: &Pooled) -> Option<Place> {
+    let deviation = |c: &&Cell| (c.observed as f64 - c.expected) / c.expected.sqrt();
+    let leaves = tree.nodes.iter().filter(|c| c.children.is_none() && c.node >= OUTER);
+    let worst = leaves.max_by(|a, b| deviation(a).abs().total_cmp(&deviation(b).abs()))?;
+    let cell = partition.node_cell(worst.node - OUTER);
+    let wi = partition.chart().to_direction(cell.at(0.5, 0.5));
+    let place = Place::pair(evidence.wo, wi).value("observed", worst.observed as f64);
+    Some(place.value("expected", worst.expected).value("σ", deviation(&worst)))
 }
 
 /// The local guard: the smallest ln p, over all nodes, of a count were the

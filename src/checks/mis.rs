@@ -24,6 +24,9 @@ impl Check for Mis {
     }
 
     fn applies(&self, description: &Description) -> Result<(), String> {
+        if !description.claims.reflective && !description.claims.transmissive {
+            return Err("no side is claimed to which light leaves".into());
+        }
         needs_functions(description, true, true, true)?;
         needs_determinism(description)
     }

@@ -35,7 +35,9 @@ impl Check for Normalization {
 
     fn judge(&self, evidence: &Evidence, terms: &Terms) -> Judgement {
         let Some(integrals) = &evidence.integrals else { return Judgement::Missing };
-        if let Err(reason) = integrals.reliable() {
+        let (least, deviation) = integrals.cross_check;
+        let excess = least - 10.0 * deviation > 1.0 + terms.mean_tolerance;
+        if let (Err(reason), false) = (integrals.reliable(), excess) {
             return Outcome::inconclusive(reason).into();
         }
         let Some(draws) = evidence.draws.get(terms.attempt) else { return Judgement::Missing };

@@ -49,6 +49,12 @@ impl Check for Reference {
         let (Some(partition), Some(draws)) = (&evidence.partition, evidence.draws.get(terms.attempt)) else {
             return Outcome::new(Verdict::Pass, held).into();
         };
+        if reference.masses.is_empty() {
+            return Outcome::new(Verdict::Pass, held).into();
+        }
+        if let Some(reason) = &reference.unreliable {
+            return Outcome::inconclusive(format!("of the reference: {reason}")).into();
+        }
         let continuous: f64 = reference.masses.iter().sum();
         if continuous == 0.0 && draws.continuous() == 0 {
             return Outcome::new(Verdict::Pass, format!("{held}; neither has a continuous lobe")).into();

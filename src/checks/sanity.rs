@@ -19,7 +19,7 @@ impl Check for Sanity {
     }
 
     fn needs(&self) -> &'static [Measurement] {
-        &[Measurement::Corners, Measurement::Integrals]
+        &Measurement::ALL
     }
 
     fn applies(&self, _: &Description) -> Result<(), String> {

@@ -27,7 +27,7 @@ impl Check for Sensitivity {
     }
 
     fn needs(&self) -> &'static [Measurement] {
-        &[Measurement::Samples, Measurement::Variations]
+        &[Measurement::Samples, Measurement::Variations, Measurement::Integrals, Measurement::Draws]
     }
 
     fn applies(&self, description: &Description) -> Result<(), String> {
@@ -42,6 +42,9 @@ impl Check for Sensitivity {
         }
         if variations.is_empty() && evidence.two_sided.is_none() {
             return Outcome::skipped("the subject declares no parameter and no second side").into();
+        }
+        if evidence.is_black() {
+            return Outcome::skipped("no light leaves here: nothing could change").into();
         }
         let mut largest: BTreeMap<&str, (f64, String)> = BTreeMap::new();
         for v in variations {

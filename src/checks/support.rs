@@ -1,7 +1,7 @@
 //! pdf is positive where samples fall and where light is, and nowhere else.
 
 use super::outcome::{Check, Effect, Judgement, Outcome, Terms, Verdict, needs_determinism, needs_functions};
-use crate::bsdf::Description;
+use crate::bsdf::{Description, OffSupport};
 use crate::evidence::{Evidence, Measurement, Place, SMALLEST_PEAK};
 
 /// The share of ∫f|cos θi| that may lie where pdf = 0: cells at the rim of the
@@ -58,6 +58,15 @@ impl Check for Support {
                     .into();
             }
         }
+        if let Err(reason) = integrals.reliable() {
+            return Outcome::inconclusive(reason).into();
+        }
+        let claims = &evidence.description.claims;
+        if claims.off_support == OffSupport::Never && draws.none > 0 {
+            let message =
+                format!("off_support = \"never\" is claimed, and {} draws gave no sample", draws.none);
+            return Outcome::new(Verdict::Fail, message).into();
+        }
         let channels = evidence.description.channels.len();
         let mean: f64 = (0..channels).map(|c| integrals.albedo(c).0).sum::<f64>() / channels as f64;
         let lost = if mean > 0.0 { integrals.lost / mean } else { 0.0 };
@@ -65,6 +74,18 @@ impl Check for Support {
         if lost > LOST {
             let message = format!("{:.3e} of ∫f|cos θi| lies where pdf = 0: sampling never finds it", lost);
             return Outcome { effect: Some(effect), ..Outcome::new(Verdict::Fail, message) }.into();
+        }
+        // Light on a side that is not claimed would be missed by cosine sampling, and by readers.
+        for (claimed, word, front) in [
+            (claims.reflective, "reflective", evidence.wo.z > 0.0),
+            (claims.transmissive, "transmissive", evidence.wo.z <= 0.0),
+        ] {
+            let leaves = (0..partition.len()).filter(|l| partition.leaf_cell(*l).is_front() == front);
+            let there: f64 = leaves.flat_map(|l| &integrals.value[l * channels..(l + 1) * channels]).sum();
+            if !claimed && there / channels as f64 > LOST * mean {
+                let message = format!("{word} is not claimed, and ∫f|cos θi| = {there:.3e} on that side");
+                return Outcome::new(Verdict::Fail, message).into();
+            }
         }
         // Phantom mass: nodes that expect samples and have none.
         let counts = partition.sum_up(&draws.counts);

@@ -33,8 +33,12 @@ impl Check for WhiteFurnace {
         needs_determinism(description)
     }
 
-    fn judge(&self, evidence: &Evidence, _: &Terms) -> Judgement {
+    fn judge(&self, evidence: &Evidence, terms: &Terms) -> Judgement {
         let Some(integrals) = &evidence.integrals else { return Judgement::Missing };
+        // A rare discrete lobe may carry much of the flux: wait for all draws.
+        if let (Some(next), true) = (terms.next, evidence.description.has.sample) {
+            return Judgement::More(next);
+        }
         if let Err(reason) = integrals.reliable() {
             return Outcome::inconclusive(reason).into();
         }

@@ -166,7 +166,9 @@ impl<'r, 'a> Run<'r, 'a> {
                 .with("subject", &case.spelling)
                 .with("wo", &format!("{:x} {:x} {:x}", wo.x.to_bits(), wo.y.to_bits(), wo.z.to_bits()))
                 .with("transport", &case.transport.to_string()),
-            mis: open.iter().any(|o| o.check.needs().contains(&Measurement::Mis)),
+            mis: description.has.eval
+                && description.has.pdf
+                && open.iter().any(|o| o.check.needs().contains(&Measurement::Mis)),
         };
         let meter = Meter::new(&*case.subject, description, watch.clone());
         Self {
@@ -193,6 +195,8 @@ impl<'r, 'a> Run<'r, 'a> {
             }
         }
         self.judge(0, None, findings, |open| !open.check.needs().contains(&Measurement::Draws));
+        // Sanity speaks of every number, so it waits for the last draw.
+        let sanity = |open: &Open| open.check.id() == "sanity";
         let looks = self.looks.clone();
         for (k, n) in looks.iter().enumerate() {
             if self.open.iter().all(|o| o.suspicion.is_some()) {
@@ -201,8 +205,9 @@ impl<'r, 'a> Run<'r, 'a> {
             self.gatherer.draw(0, *n);
             self.terms.ln_tail = budget::look_share(self.attempt, looks.len(), k).ln();
             self.terms.next = looks.get(k + 1).copied();
-            self.judge(0, Some(*n), findings, |_| true);
+            self.judge(0, Some(*n), findings, |open| !sanity(open));
         }
+        self.judge(0, None, findings, sanity);
         self.confirm(findings);
         self.gatherer.into_evidence()
     }

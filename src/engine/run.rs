@@ -131,7 +131,8 @@ pub fn run_here<'a>(plan: &Plan<'a>, options: &Options) -> Results<'a> {
             cases.push(not_run(index, case, &Outcome::skipped("time was up before this case")));
             continue;
         }
-        let watch = Arc::new(Watch::new(case.settings.time_limit, options.stop.clone()));
+        let watch = Watch::new(case.settings.time_limit, options.stop.clone());
+        let watch = Arc::new(watch.until(options.deadline.map(|d| start + d)));
         cases.push(run_case(index, case, plan.seed, share, &watch));
     }
     let partial =

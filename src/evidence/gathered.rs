@@ -49,6 +49,23 @@ pub enum Measurement {
     Reference,
 }
 
+impl Measurement {
+    /// Every one.
+    pub const ALL: [Self; 11] = [
+        Self::Corners,
+        Self::Samples,
+        Self::Pairs,
+        Self::Repeats,
+        Self::Rotations,
+        Self::Jacobian,
+        Self::Variations,
+        Self::Integrals,
+        Self::Draws,
+        Self::Mis,
+        Self::Reference,
+    ];
+}
+
 /// Everything that was measured of one case. A part that is `None` was not
 /// asked for, cannot be had of this subject, or was not reached before `halt`.
 #[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
@@ -159,14 +176,27 @@ impl<'a> Gatherer<'a> {
     pub fn prepare(&mut self, asked: &[Measurement], company: &Company, draws: u64) {
         use Measurement as M;
         let has = self.meter.description.has;
-        // The pilot is always drawn: partitions and probes stand on it.
+        // The pilot is always drawn: partitions and probes stand on it; and the
+        // probe of the cosine's convention must not depend on what is asked for.
+        let always = |step| match step {
+            M::Samples => has.sample,
+            M::Pairs => has.eval && has.pdf && has.sample,
+            _ => false,
+        };
         let order = [M::Samples, M::Pairs, M::Corners, M::Repeats, M::Rotations, M::Jacobian, M::Variations];
         for step in order {
-            if step == M::Corners {
-                self.settle_cosine();
+            if step == M::Corners && self.settle_cosine() {
+                // Under the convention that was found.
+                if let Err(halt) = self.measure(M::Samples, company) {
+                    self.halted(M::Samples, halt);
+                }
+                if let Err(halt) = self.measure(M::Pairs, company) {
+                    self.halted(M::Pairs, halt);
+                }
             }
-            let wanted = asked.contains(&step) || (step == M::Samples && has.sample);
-            if wanted && let Err(halt) = self.measure(step, company) {
+            if (asked.contains(&step) || always(step))
+                && let Err(halt) = self.measure(step, company)
+            {
                 self.halted(step, halt);
             }
         }
@@ -248,21 +278,21 @@ impl<'a> Gatherer<'a> {
     /// convention at every sample, and reciprocity, as far as it is claimed,
     /// holds under the other one and not under the declared one, the values are
     /// taken as they are meant.
-    fn settle_cosine(&mut self) {
-        let (Some(samples), Some(pairs)) = (&mut self.evidence.samples, &mut self.evidence.pairs) else {
-            return;
+    fn settle_cosine(&mut self) -> bool {
+        let (Some(samples), Some(pairs)) = (&self.evidence.samples, &self.evidence.pairs) else {
+            return false;
         };
         let reciprocal_other = pairs.reciprocity.is_broken() && !pairs.reciprocity_other.is_broken();
-        if samples.suggests_other_cosine() && self.setup.claims.reciprocal && reciprocal_other {
+        let other = samples.suggests_other_cosine() && self.setup.claims.reciprocal && reciprocal_other;
+        if other {
             let found = match self.meter.cosine.get() {
                 Cosine::Excluded => Cosine::Included,
                 Cosine::Included => Cosine::Excluded,
             };
             self.meter.cosine.set(found);
-            std::mem::swap(&mut samples.weight, &mut samples.weight_other);
-            std::mem::swap(&mut pairs.reciprocity, &mut pairs.reciprocity_other);
             self.evidence.cosine_found = Some(found);
         }
+        other
     }
 
     fn integrate(&mut self, draws: u64) -> Result<(), Halt> {
@@ -291,15 +321,14 @@ impl<'a> Gatherer<'a> {
         let description = Meter::describe(other)?;
         let claims: Claims = description.claims;
         let other = Meter::new(other, description, self.watch.clone());
-        let masses = match &self.evidence.partition {
-            Some(partition) if other.description.has.pdf => {
-                let pilot = self.pilot_points(partition.chart());
-                let setup = Setup { claims, ..self.setup.clone() };
-                Integrals::gather(&other, &setup, partition, &pilot, draws, MOST_EVALUATIONS)?.pdf
-            }
-            _ => Vec::new(),
-        };
-        let comparison = Comparison::gather(&self.meter, &self.setup, &self.pilot, &other, name, masses)?;
+        let mut comparison = Comparison::gather(&self.meter, &self.setup, &self.pilot, &other, name)?;
+        if let (Some(partition), true) = (&self.evidence.partition, other.description.has.pdf) {
+            let pilot = self.pilot_points(partition.chart());
+            let setup = Setup { claims, ..self.setup.clone() };
+            let integrals = Integrals::gather(&other, &setup, partition, &pilot, draws, MOST_EVALUATIONS)?;
+            comparison.unreliable = integrals.reliable().err();
+            comparison.masses = integrals.pdf;
+        }
         self.evidence.reference = Some(comparison);
         Ok(())
     }
@@ -326,7 +355,18 @@ impl Evidence {
     pub fn looks_unimplemented(&self) -> bool {
         let no_sample = self.samples.as_ref().is_some_and(|s| s.valid == 0);
         let no_density = self.integrals.as_ref().is_none_or(|i| i.mass().0 == 0.0);
-        no_sample && no_density && self.description.has.sample
+        let claims = &self.description.claims;
+        // A one-sided subject may well do nothing when seen from behind.
+        let claimed = self.wo.z > 0.0 || claims.transmissive || claims.two_sided;
+        no_sample && no_density && claimed && self.description.has.sample
+    }
+
+    /// Whether no light leaves at all, by a measured integral and the discrete
+    /// lobes met.
+    pub fn is_black(&self) -> bool {
+        let dark = |i: &Integrals| (0..i.value_error.len()).all(|c| i.albedo(c).0 == 0.0);
+        let discrete = self.draws.iter().flat_map(|d| &d.discrete);
+        self.integrals.as_ref().is_some_and(dark) && discrete.flat_map(|d| &d.weight).all(|w| *w == 0.0)
     }
 
     /// Whether its random numbers are its own, so that u says nothing.

@@ -81,7 +81,13 @@ impl Jacobian {
         let same_turn = oriented.iter().all(|o| *o > 0.0) || oriented.iter().all(|o| *o < 0.0);
         let shares = points.iter().map(|p| branch(meter, setup, p, [i, j])).collect::<Result<Vec<_>, _>>()?;
         let one_branch = shares.iter().all(|(share, _)| *share == 1.0);
-        let one_to_one = same_turn && one_branch && !has_jump(meter, setup, [i, j])?;
+        let mut one_to_one = same_turn && one_branch && !has_jump(meter, setup, [i, j])?;
+        // Before equality is found broken: continuous and oriented maps may
+        // still meet a direction twice.
+        let short = |p: &Point, oriented: &f64| p.pdf * oriented.abs() > 1.0 + TOLERANCE;
+        if one_to_one && points.iter().zip(&oriented).any(|(p, o)| short(p, o)) {
+            one_to_one = !has_second_origin(meter, setup, &points, [i, j])?;
+        }
         let mut tally = Tally::new(TOLERANCE);
         for ((point, oriented), (share, slack)) in points.iter().zip(oriented).zip(shares) {
             let density = share / oriented.abs();
@@ -194,6 +200,76 @@ fn has_jump(meter: &Meter, setup: &Setup, active: [usize; 2]) -> Result<bool, Ha
             // 24 halvings shrink a smooth step by 6e-8, a square root's by 2e-4.
             if step > 0.01 * start {
                 return Ok(true);
+            }
+        }
+    }
+    Ok(false)
+}
+
+/// Points whose other origins are looked for, draws among which, starts for
+/// each, and steps of Newton's method from each.
+const SOUGHT: usize = 8;
+const ORIGINS: usize = 4096;
+const STARTS: usize = 24;
+const STEPS: usize = 20;
+
+/// Whether another u leads to the same wi: Newton's method towards it, inside
+/// of the unit square, from draws that fell near it with another u.
+fn has_second_origin(
+    meter: &Meter,
+    setup: &Setup,
+    points: &[Point],
+    active: [usize; 2],
+) -> Result<bool, Halt> {
+    let d = meter.dimensions();
+    let mut u = vec![0.0; ORIGINS * d];
+    setup.key.with("stage", "origins").block(0).fill(false, &mut u);
+    let (mut draws, mut around) = (Samples::default(), Samples::default());
+    meter.sample(setup.wo, &u, setup.transport, &mut draws)?;
+    let apart = |a: &[f64], b: &[f64]| active.iter().map(|k| (a[*k] - b[*k]).abs()).fold(0.0, f64::max);
+    for point in points.iter().take(SOUGHT) {
+        let mut starts: Vec<usize> = (0..ORIGINS)
+            .filter(|k| draws.lobe[*k].is_continuous() && apart(&u[k * d..(k + 1) * d], &point.u) > 0.02)
+            .collect();
+        starts.sort_by(|a, b| {
+            let far = |k: &usize| (draws.wi[*k] - point.wi).length();
+            far(a).total_cmp(&far(b))
+        });
+        for start in starts.into_iter().take(STARTS) {
+            let mut at = u[start * d..(start + 1) * d].to_vec();
+            for _ in 0..STEPS {
+                let mut rows = at.clone();
+                for k in active {
+                    for step in [STEP, -STEP] {
+                        let mut row = at.clone();
+                        row[k] += step;
+                        rows.extend(row);
+                    }
+                }
+                meter.sample(setup.wo, &rows, setup.transport, &mut around)?;
+                if !around.lobe.iter().all(|l| l.is_continuous()) {
+                    break;
+                }
+                let rest = point.wi - around.wi[0];
+                if rest.length() < 1e-9 {
+                    if apart(&at, &point.u) > 1e-3 {
+                        return Ok(true);
+                    }
+                    break;
+                }
+                let slope = |k: usize| (around.wi[k] - around.wi[k + 1]) * (0.5 / STEP);
+                let (a, b) = (slope(1), slope(3));
+                // Least squares in the two numbers that move wi.
+                let (aa, ab, bb) = (a.dot(a), a.dot(b), b.dot(b));
+                let (ar, br) = (a.dot(rest), b.dot(rest));
+                let determinant = aa * bb - ab * ab;
+                let steps = [(ar * bb - br * ab) / determinant, (br * aa - ar * ab) / determinant];
+                for (k, step) in active.into_iter().zip(steps) {
+                    at[k] += step.clamp(-0.1, 0.1);
+                }
+                if !active.iter().all(|k| at[*k] > 2.0 * STEP && at[*k] < 1.0 - 2.0 * STEP) {
+                    break;
+                }
             }
         }
     }

@@ -2,6 +2,7 @@
 //! panics, and looks at every number that comes back.
 
 use super::tally::{Place, Tally};
+use crate::bsdf::MAX_CHANNELS;
 use crate::bsdf::{
     Cosine, Description, Direction, Lobe, Precision, Samples, Subject, SubjectError, Transport,
 };
@@ -48,6 +49,7 @@ impl Evaluations {
 #[derive(Debug)]
 pub struct Watch {
     limit: Duration,
+    deadline: Option<Instant>,
     stop: Arc<AtomicBool>,
     origin: Instant,
     /// Microseconds from `origin` to the start of the call under way, plus
@@ -58,7 +60,13 @@ pub struct Watch {
 impl Watch {
     /// A subject may take `limit` in all, unless `stop` is set before.
     pub fn new(limit: Duration, stop: Arc<AtomicBool>) -> Self {
-        Self { limit, stop, origin: Instant::now(), call_started: AtomicU64::new(0) }
+        Self { limit, deadline: None, stop, origin: Instant::now(), call_started: AtomicU64::new(0) }
+    }
+
+    /// Stops by itself at `deadline`.
+    pub fn until(mut self, deadline: Option<Instant>) -> Self {
+        self.deadline = deadline;
+        self
     }
 
     /// How long the call under way has taken.
@@ -159,7 +167,14 @@ impl<'a> Meter<'a> {
     /// Asks any subject for its description, with the same protection.
     pub fn describe(subject: &dyn Subject) -> Result<Description, SubjectError> {
         listen_to_panics();
-        guarded("describe", || Ok(subject.describe()))
+        let description = guarded("describe", || Ok(subject.describe()))?;
+        let channels = description.channels.len();
+        if !(1..=MAX_CHANNELS).contains(&channels) {
+            return Err(SubjectError::Broken(format!(
+                "it describes {channels} channels; a subject has 1 to {MAX_CHANNELS}"
+            )));
+        }
+        Ok(description)
     }
 
     /// Number of channels.
@@ -197,7 +212,8 @@ impl<'a> Meter<'a> {
         function: &'static str,
         f: impl FnOnce() -> Result<T, SubjectError>,
     ) -> Result<T, Halt> {
-        if self.watch.stop.load(Ordering::Relaxed) {
+        let over = self.watch.deadline.is_some_and(|d| Instant::now() > d);
+        if over || self.watch.stop.load(Ordering::Relaxed) {
             return Err(Halt::Stopped);
         }
         let start = Instant::now();
@@ -316,6 +332,12 @@ impl<'a> Meter<'a> {
             if length <= 2.0 * tolerance && heavy && pdf > 0.0 && pdf < f64::INFINITY {
                 continue;
             }
+            if pdf == 0.0 {
+                // Integrators drop such a draw: it is no sample.
+                out.lobe[k] = Lobe::NONE;
+                out.weight[k * out.channels..(k + 1) * out.channels].fill(0.0);
+                continue;
+            }
             let place = || Place::pair(wo, wi).drawn_by(&u[k * self.dimensions()..][..self.dimensions()]);
             if let Some(w) = weights.iter().find(|w| !(**w >= 0.0 && **w < f64::INFINITY)) {
                 let sentence =
@@ -328,7 +350,7 @@ impl<'a> Meter<'a> {
                 out.lobe[k] = Lobe::NONE;
             }
             if !(pdf > 0.0 && pdf < f64::INFINITY) {
-                let sentence = if pdf.is_finite() { "sample().pdf > 0" } else { "sample().pdf is finite" };
+                let sentence = if pdf.is_finite() { "sample().pdf ≥ 0" } else { "sample().pdf is finite" };
                 sanity.broken(sentence, pdf, place().value("sample.pdf", pdf));
                 out.lobe[k] = Lobe::NONE;
             }

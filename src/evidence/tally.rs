@@ -117,8 +117,8 @@ impl Tally {
 /// below `floor` in both they count as equal. NaN if either is.
 #[inline]
 pub fn relative_error(a: f64, b: f64, floor: f64) -> f64 {
-    if a == b {
+    if a == b || (a.abs() <= floor && b.abs() <= floor) {
         return 0.0;
     }
-    (a - b).abs() / a.abs().max(b.abs()).max(floor)
+    (a - b).abs() / a.abs().max(b.abs())
 }

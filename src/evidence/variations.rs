@@ -6,7 +6,7 @@ use super::probes;
 use super::samples::Pilot;
 use super::setup::Setup;
 use super::tally::{Place, Tally, relative_error};
-use crate::bsdf::{Direction, Samples, Subject};
+use crate::bsdf::{Direction, RandomNumbers, Samples, Subject};
 use crate::evidence::Figure;
 use crate::registry::Role;
 use serde::{Deserialize, Serialize};
@@ -95,6 +95,8 @@ impl Variation {
             let Some(subject) = (variant.build)() else { continue };
             let description = Meter::describe(&*subject)?;
             let other = Meter::new(&*subject, description, watch.clone());
+            // As the case itself is measured, whatever the variant says of itself.
+            other.cosine.set(meter.cosine.get());
             let change = if other.channels() == meter.channels() && other.dimensions() == meter.dimensions() {
                 own.distance(&Response::of(&other, setup, &given, &wi)?)
             } else {
@@ -143,7 +145,7 @@ impl Response {
             meter.pdf(wo, wi, setup.transport, &mut part)?;
             numbers.extend_from_slice(&part);
         }
-        if meter.description.has.sample {
+        if meter.description.has.sample && meter.description.claims.rng == RandomNumbers::External {
             let samples = draw(meter, setup, wo, ROWS)?;
             for (k, d) in samples.wi.iter().enumerate() {
                 numbers.extend([d.x, d.y, d.z, samples.pdf[k], f64::from(samples.lobe[k].0)]);
@@ -236,25 +238,27 @@ pub struct Comparison {
     pub pdf: Tally,
     /// ∫ of the other's pdf by leaf, which the draws must follow.
     pub masses: Vec<f64>,
+    /// Why these masses cannot be relied on, if so.
+    pub unreliable: Option<String>,
     /// Why the two cannot be compared, if so.
     pub incomparable: Option<String>,
 }
 
 impl Comparison {
-    /// Compares values at many directions. `masses` are integrated elsewhere.
+    /// Compares values at many directions; masses are integrated elsewhere.
     pub fn gather(
         meter: &Meter,
         setup: &Setup,
         pilot: &Pilot,
         other: &Meter,
         name: &str,
-        masses: Vec<f64>,
     ) -> Result<Self, Halt> {
         let mut found = Self {
             name: name.into(),
             eval: Tally::new(setup.tolerance()),
             pdf: Tally::new(setup.tolerance()),
-            masses,
+            masses: Vec::new(),
+            unreliable: None,
             incomparable: None,
         };
         if other.channels() != meter.channels() {

@@ -124,8 +124,8 @@ pub fn integrate<E>(
         evaluate(partition, &mut todo, goal, &mut f, &mut values, &mut errors, &mut largest)?;
         done.append(&mut todo);
         let split = to_split(&done, &values, &errors, partition.len(), goal, pilot_size);
-        let converged = !split.iter().any(|s| *s);
-        if converged || evaluations >= goal.evaluations {
+        let converged = !split.contains(&Split::Needed);
+        if !split.iter().any(|s| *s != Split::No) || evaluations >= goal.evaluations {
             let mut result = LeafIntegrals {
                 components: goal.components,
                 values: vec![0.0; partition.len() * goal.components],
@@ -148,8 +148,9 @@ pub fn integrate<E>(
         let mut kept = 0;
         let mut stay = Vec::with_capacity(done.len());
         for (k, patch) in done.drain(..).enumerate() {
-            if split[k] {
-                todo.extend(halve(patch));
+            if split[k] != Split::No {
+                let suspicion = u32::from(split[k] == Split::Suspected);
+                todo.extend(halve(Patch { suspicion: patch.suspicion + suspicion, ..patch }));
                 continue;
             }
             let (from, to) = (k * goal.components, kept * goal.components);
@@ -287,7 +288,19 @@ fn evaluate<E>(
     Ok(())
 }
 
-/// Which patches must be halved.
+/// What becomes of a patch.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+enum Split {
+    /// It stays.
+    No,
+    /// The pilot found other than the rule says: worth a look, but a wrong pilot
+    /// must not keep the cubature from its goals.
+    Suspected,
+    /// A goal is not reached with it.
+    Needed,
+}
+
+/// Which patches are to be halved.
 fn to_split(
     patches: &[Patch],
     values: &[f64],
@@ -295,7 +308,7 @@ fn to_split(
     leaves: usize,
     goal: &Goal,
     pilot_size: f64,
-) -> Vec<bool> {
+) -> Vec<Split> {
     let n = goal.components;
     let steering = 1 + goal.controlled;
     let mut total = vec![0.0; steering];
@@ -326,7 +339,7 @@ fn to_split(
         .enumerate()
         .map(|(k, patch)| {
             if patch.depth >= DEEPEST {
-                return false;
+                return Split::No;
             }
             let error = &errors[k * n..];
             let by_cell =
@@ -343,7 +356,13 @@ fn to_split(
             let found = patch.pilot.len() as f64;
             let by_pilot = patch.suspicion < SUSPICION
                 && (found - expected).abs() > 5.0 * found.max(expected).max(0.0).sqrt() + 5.0;
-            by_cell || by_total || by_marker || by_pilot
+            if by_cell || by_total || by_marker {
+                Split::Needed
+            } else if by_pilot {
+                Split::Suspected
+            } else {
+                Split::No
+            }
         })
         .collect()
 }
