@@ -96,7 +96,7 @@ fn contingency(table: &[u64]) -> Option<(f64, f64, u64)> {
     let least = (20.0 * total as f64).sqrt();
     let rows: Vec<usize> = (0..SERIAL).filter(|r| row_total(*r) as f64 >= least).collect();
     let columns: Vec<usize> = (0..SERIAL).filter(|c| column_total(*c) as f64 >= least).collect();
-    if rows.len() < 2 || columns.len() < 2 {
+    if total == 0 || rows.len() < 2 || columns.len() < 2 {
         return None;
     }
     let cell = |r: usize, c: usize| table[r * SERIAL + c] as f64;
