@@ -51,8 +51,7 @@ struct Shared {
 /// number of threads. `observe` is called on this thread only.
 pub fn run(plan: &Plan<'static>, options: &Options, observe: &mut dyn FnMut(&Event)) -> Results<'static> {
     let start = Instant::now();
-    let tests: usize = plan.cases.iter().map(|c| statistical_tests(c)).sum();
-    let share = plan.share.unwrap_or_else(|| Budget { total: plan.false_alarm }.share(tests));
+    let (tests, share) = shares(plan);
     let shared = Arc::new(Shared {
         cases: plan.cases.clone(),
         queue: Mutex::new((0..plan.cases.len()).collect()),
@@ -121,8 +120,7 @@ pub fn run(plan: &Plan<'static>, options: &Options, observe: &mut dyn FnMut(&Eve
 /// Runs the cases one after the other on this thread, as unit tests want it.
 pub fn run_here<'a>(plan: &Plan<'a>, options: &Options) -> Results<'a> {
     let start = Instant::now();
-    let tests: usize = plan.cases.iter().map(|c| statistical_tests(c)).sum();
-    let share = plan.share.unwrap_or_else(|| Budget { total: plan.false_alarm }.share(tests));
+    let (tests, share) = shares(plan);
     let mut cases = Vec::new();
     let mut left = 0;
     for (index, case) in plan.cases.iter().enumerate() {
@@ -138,6 +136,12 @@ pub fn run_here<'a>(plan: &Plan<'a>, options: &Options) -> Results<'a> {
     let partial =
         (left > 0).then(|| format!("time was up: {left} of {} cases were not begun", plan.cases.len()));
     Results { cases, share, tests, partial, seconds: start.elapsed().as_secs_f64() }
+}
+
+/// Number of statistical tests of a plan, and what each may spend.
+fn shares(plan: &Plan) -> (usize, f64) {
+    let tests = plan.cases.iter().map(|c| statistical_tests(c)).sum();
+    (tests, plan.share.unwrap_or_else(|| Budget { total: plan.false_alarm }.share(tests)))
 }
 
 fn pool(threads: usize) -> rayon::ThreadPool {

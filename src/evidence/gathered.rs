@@ -10,7 +10,7 @@ use super::samples::{Pilot, SampleIdentities};
 use super::setup::Setup;
 use super::tally::Tally;
 use super::variations::{Comparison, Variant, Variation, two_sided};
-use crate::bsdf::{Claims, Cosine, Description, Direction, RandomNumbers, Subject, SubjectError, Transport};
+use crate::bsdf::{Claims, Cosine, Description, Direction, Subject, SubjectError, Transport};
 use crate::sphere::{Chart, Partition, Point};
 use serde::{Deserialize, Serialize};
 use std::sync::Arc;
@@ -367,10 +367,5 @@ impl Evidence {
         let dark = |i: &Integrals| (0..i.value_error.len()).all(|c| i.albedo(c).0 == 0.0);
         let discrete = self.draws.iter().flat_map(|d| &d.discrete);
         self.integrals.as_ref().is_some_and(dark) && discrete.flat_map(|d| &d.weight).all(|w| *w == 0.0)
-    }
-
-    /// Whether its random numbers are its own, so that u says nothing.
-    pub fn owns_random_numbers(&self) -> bool {
-        self.description.claims.rng == RandomNumbers::Internal
     }
 }
