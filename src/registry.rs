@@ -59,6 +59,13 @@ pub enum Kind {
         /// All of them.
         options: Vec<String>,
     },
+    /// Another registered subject, as a person writes it.
+    Subject {
+        /// Where none is given.
+        default: String,
+    },
+    /// The path of a file. It must be given.
+    File,
 }
 
 /// What a parameter means to checks that know its limits.
@@ -87,11 +94,12 @@ pub struct Parameter {
 }
 
 impl Parameter {
-    /// The default.
-    pub fn default(&self) -> Value {
+    /// The default; `None` where a value must be given.
+    pub fn default(&self) -> Option<Value> {
         match &self.kind {
-            Kind::Number { default, .. } => Value::Number(*default),
-            Kind::Choice { default, .. } => Value::Text(default.clone()),
+            Kind::Number { default, .. } => Some(Value::Number(*default)),
+            Kind::Choice { default, .. } | Kind::Subject { default } => Some(Value::Text(default.clone())),
+            Kind::File => None,
         }
     }
 
@@ -100,7 +108,18 @@ impl Parameter {
         self.only_when.as_ref().is_none_or(|(name, values)| values.iter().any(|v| v == parameters.text(name)))
     }
 
-    fn check(&self, value: &Value) -> Result<(), RegistryError> {
+    /// A value in the form that it has for this parameter: words may look like
+    /// numbers.
+    fn as_declared(&self, value: &Value) -> Value {
+        match self.kind {
+            Kind::Number { .. } => value.clone(),
+            _ => Value::Text(value.to_string()),
+        }
+    }
+
+    /// Whether the parameter takes this value. A nested subject is only looked up
+    /// when it is built.
+    pub fn check(&self, value: &Value) -> Result<(), RegistryError> {
         let bad = |expected: String, nearest: Option<String>| RegistryError::BadValue {
             parameter: self.name.clone(),
             value: value.to_string(),
@@ -124,6 +143,11 @@ impl Parameter {
                 let nearest = nearest(&text, options.iter().map(String::as_str));
                 Err(bad(format!("one of {}", options.join(", ")), nearest))
             }
+            (Kind::Subject { .. }, v) if v.to_string().is_empty() => {
+                Err(bad("a subject: NAME or NAME:KEY=VALUE".into(), None))
+            }
+            (Kind::File, v) if v.to_string().is_empty() => Err(bad("the path of a file".into(), None)),
+            (Kind::Subject { .. } | Kind::File, _) => Ok(()),
         }
     }
 }
@@ -145,19 +169,32 @@ impl Parameters {
         }
     }
 
-    /// The word `name`.
+    /// The word `name`: an option, a path, or how a nested subject is written.
     ///
     /// # Panics
-    /// If the model did not declare it as a choice.
+    /// If the model did not declare it as one of these.
     pub fn text(&self, name: &str) -> &str {
         match self.0.get(name) {
             Some(Value::Text(v)) => v,
-            other => panic!("the model declares no choice `{name}` (found {other:?})"),
+            other => panic!("the model declares no word `{name}` (found {other:?})"),
         }
     }
 }
 
-type Build = dyn Fn(&Parameters) -> Result<Arc<dyn Subject>, String> + Send + Sync;
+/// The subjects that a model is made of, by the name of their parameter.
+pub struct Parts(BTreeMap<String, Arc<dyn Subject>>);
+
+impl Parts {
+    /// The subject `name`.
+    ///
+    /// # Panics
+    /// If the model did not declare it as a subject.
+    pub fn subject(&self, name: &str) -> Arc<dyn Subject> {
+        self.0.get(name).unwrap_or_else(|| panic!("the model declares no subject `{name}`")).clone()
+    }
+}
+
+type Build = dyn Fn(&Parameters, &Parts) -> Result<Arc<dyn Subject>, String> + Send + Sync;
 
 /// A registered model: a name, its parameters and how to build it.
 #[derive(Clone)]
@@ -175,25 +212,27 @@ impl Model {
         doc: impl Into<String>,
         build: impl Fn(&Parameters) -> Result<S, String> + Send + Sync + 'static,
     ) -> Self {
+        Self::composed(name, doc, move |parameters, _| build(parameters))
+    }
+
+    /// As [`new`](Self::new), for a model made of other subjects.
+    pub fn composed<S: Subject + 'static>(
+        name: impl Into<String>,
+        doc: impl Into<String>,
+        build: impl Fn(&Parameters, &Parts) -> Result<S, String> + Send + Sync + 'static,
+    ) -> Self {
         Self {
             name: name.into(),
             doc: doc.into(),
             parameters: Vec::new(),
-            build: Arc::new(move |p| Ok(Arc::new(build(p)?) as Arc<dyn Subject>)),
+            build: Arc::new(move |p, parts| Ok(Arc::new(build(p, parts)?) as Arc<dyn Subject>)),
         }
     }
 
-    /// Declares a number in `range`.
-    pub fn number(
-        mut self,
-        name: &str,
-        default: f64,
-        range: std::ops::RangeInclusive<f64>,
-        doc: &str,
-    ) -> Self {
+    fn declare(mut self, name: &str, kind: Kind, doc: &str) -> Self {
         self.parameters.push(Parameter {
             name: name.into(),
-            kind: Kind::Number { default, min: *range.start(), max: *range.end() },
+            kind,
             doc: doc.into(),
             role: None,
             only_when: None,
@@ -201,19 +240,25 @@ impl Model {
         self
     }
 
+    /// Declares a number in `range`.
+    pub fn number(self, name: &str, default: f64, range: std::ops::RangeInclusive<f64>, doc: &str) -> Self {
+        self.declare(name, Kind::Number { default, min: *range.start(), max: *range.end() }, doc)
+    }
+
     /// Declares a choice; the first option is the default.
-    pub fn choice(mut self, name: &str, options: &[&str], doc: &str) -> Self {
-        self.parameters.push(Parameter {
-            name: name.into(),
-            kind: Kind::Choice {
-                default: options[0].into(),
-                options: options.iter().map(|o| (*o).to_string()).collect(),
-            },
-            doc: doc.into(),
-            role: None,
-            only_when: None,
-        });
-        self
+    pub fn choice(self, name: &str, options: &[&str], doc: &str) -> Self {
+        let options: Vec<_> = options.iter().map(|o| (*o).to_string()).collect();
+        self.declare(name, Kind::Choice { default: options[0].clone(), options }, doc)
+    }
+
+    /// Declares another subject, `default` where none is given.
+    pub fn subject(self, name: &str, default: &str, doc: &str) -> Self {
+        self.declare(name, Kind::Subject { default: default.into() }, doc)
+    }
+
+    /// Declares a file, which must be given.
+    pub fn file(self, name: &str, doc: &str) -> Self {
+        self.declare(name, Kind::File, doc)
     }
 
     /// The parameter declared last has this meaning.
@@ -257,38 +302,61 @@ impl Model {
 
     /// All parameters, from those given and the defaults of the others.
     pub fn complete(&self, given: &[(String, Value)]) -> Result<Parameters, RegistryError> {
-        let mut all: BTreeMap<_, _> = self.parameters.iter().map(|p| (p.name.clone(), p.default())).collect();
+        let mut all = BTreeMap::new();
         for (name, value) in given {
             let parameter = self.parameter(name)?;
             parameter.check(value)?;
-            // An option may look like a number.
-            let word = matches!(parameter.kind, Kind::Choice { .. }).then(|| Value::Text(value.to_string()));
-            all.insert(name.clone(), word.unwrap_or_else(|| value.clone()));
+            all.insert(name.clone(), parameter.as_declared(value));
+        }
+        for parameter in &self.parameters {
+            if !all.contains_key(&parameter.name) {
+                let missing = || RegistryError::Missing {
+                    model: self.name.clone(),
+                    parameter: parameter.name.clone(),
+                    doc: parameter.doc.clone(),
+                };
+                all.insert(parameter.name.clone(), parameter.default().ok_or_else(missing)?);
+            }
         }
         Ok(Parameters(all))
     }
 
-    /// Builds the subject.
-    pub fn build(&self, parameters: &Parameters) -> Result<Arc<dyn Subject>, RegistryError> {
-        (self.build)(parameters).map_err(|message| RegistryError::Build { model: self.name.clone(), message })
+    /// Builds the subject, and those that it is made of from `registry`.
+    pub fn build(
+        &self,
+        parameters: &Parameters,
+        registry: &Registry,
+    ) -> Result<Arc<dyn Subject>, RegistryError> {
+        let mut parts = BTreeMap::new();
+        for p in self.parameters.iter().filter(|p| matches!(p.kind, Kind::Subject { .. })) {
+            let (_, subject) = registry.nested(&p.name, parameters.text(&p.name))?;
+            parts.insert(p.name.clone(), subject);
+        }
+        (self.build)(parameters, &Parts(parts))
+            .map_err(|message| RegistryError::Build { model: self.name.clone(), message })
     }
 
     /// How the subject is written: the name, and the parameters that are not
-    /// at their default: `torrance-sparrow:distribution=ggx,alpha=0.1`.
+    /// at their default: `torrance-sparrow:distribution=ggx,alpha=0.1`. A value
+    /// that holds a comma or a parenthesis stands in parentheses.
     pub fn spell(&self, parameters: &Parameters) -> String {
         let given: Vec<_> = self
             .parameters
             .iter()
             .filter_map(|p| {
                 let value = parameters.0.get(&p.name)?;
-                (*value != p.default()).then(|| format!("{}={value}", p.name))
+                let text = value.to_string();
+                let text = if text.contains([',', '(', ')']) { format!("({text})") } else { text };
+                (Some(value) != p.default().as_ref()).then(|| format!("{}={text}", p.name))
             })
             .collect();
         if given.is_empty() { self.name.clone() } else { format!("{}:{}", self.name, given.join(",")) }
     }
 }
 
-/// A subject as a person writes it: `NAME` or `NAME:KEY=VALUE,KEY=VALUE`.
+/// A subject as a person writes it: `NAME` or `NAME:KEY=VALUE,KEY=VALUE`. A value
+/// with commas of its own stands in parentheses, as a nested subject's:
+/// `blend:first=(lambert:reflectance=0.5,sampling=uniform)`.
 #[derive(Clone, Debug, PartialEq)]
 pub struct Spelling {
     /// The name of a registered model.
@@ -302,24 +370,55 @@ impl std::str::FromStr for Spelling {
 
     fn from_str(text: &str) -> Result<Self, RegistryError> {
         let (name, rest) = text.split_once(':').unwrap_or((text, ""));
+        let bad = |part: &str| RegistryError::Spelling { text: text.into(), part: part.into() };
         let mut parameters = Vec::new();
-        for pair in rest.split(',').filter(|p| !p.is_empty()) {
-            let Some((key, value)) = pair.split_once('=') else {
-                return Err(RegistryError::Spelling { text: text.into(), part: pair.into() });
-            };
+        for (_, part) in Self::parts(rest) {
+            let (key, value) = part.split_once('=').ok_or_else(|| bad(part))?;
+            let inner = value.strip_prefix('(').and_then(|v| v.strip_suffix(')'));
+            if !is_balanced(inner.unwrap_or(value)) {
+                return Err(RegistryError::Parentheses { text: text.into(), part: part.into() });
+            }
             // `nan` and `inf` are words: no parameter takes them as numbers.
             let number = value.parse().ok().filter(|v: &f64| v.is_finite());
-            let value = number.map_or_else(|| Value::Text(value.to_string()), Value::Number);
-            parameters.push((key.to_string(), value));
+            let word = || Value::Text(inner.unwrap_or(value).to_string());
+            parameters.push((key.to_string(), number.map_or_else(word, Value::Number)));
         }
         Ok(Self { name: name.to_string(), parameters })
     }
 }
 
+impl Spelling {
+    /// The parts of what follows `NAME:`, with the place where each starts:
+    /// between commas that are not inside of parentheses, empty ones left out.
+    pub fn parts(rest: &str) -> Vec<(usize, &str)> {
+        let mut depth = 0i32;
+        let mut start = 0;
+        let mut parts = Vec::new();
+        for (at, c) in rest.char_indices().chain([(rest.len(), ',')]) {
+            depth += i32::from(c == '(') - i32::from(c == ')');
+            if c == ',' && (depth <= 0 || at == rest.len()) {
+                parts.push((start, &rest[start..at]));
+                start = at + 1;
+            }
+        }
+        parts.retain(|(_, part)| !part.is_empty());
+        parts
+    }
+}
+
+/// Whether each parenthesis has its partner.
+fn is_balanced(text: &str) -> bool {
+    let mut depth = 0;
+    text.chars().all(|c| {
+        depth += i32::from(c == '(') - i32::from(c == ')');
+        depth >= 0
+    }) && depth == 0
+}
+
 /// All registered models.
 #[derive(Clone, Default)]
 pub struct Registry {
-    models: Vec<Model>,
+    models: Arc<Vec<Model>>,
 }
 
 impl Registry {
@@ -330,13 +429,14 @@ impl Registry {
 
     /// The models that come with gonio.
     pub fn builtin() -> Self {
-        Self { models: models::all() }
+        Self { models: Arc::new(models::all()) }
     }
 
     /// Adds a model; one of the same name is replaced.
     pub fn register(mut self, model: Model) -> Self {
-        self.models.retain(|m| m.name != model.name);
-        self.models.push(model);
+        let models = Arc::make_mut(&mut self.models);
+        models.retain(|m| m.name != model.name);
+        models.push(model);
         self
     }
 
@@ -353,6 +453,45 @@ impl Registry {
             known: self.models.iter().map(|m| m.name.clone()).collect(),
         })
     }
+
+    /// Looks up and builds a subject as it is written. A parameter that does not
+    /// apply goes back to its default and nested subjects are spelled out, so
+    /// that a subject has one spelling.
+    pub fn resolve(&self, spelling: &Spelling) -> Result<Resolved, RegistryError> {
+        let model = self.model(&spelling.name)?;
+        let mut parameters = model.complete(&spelling.parameters)?;
+        let applying: Vec<_> = spelling
+            .parameters
+            .iter()
+            .filter(|(name, _)| model.parameter(name).is_ok_and(|p| p.applies(&parameters)))
+            .cloned()
+            .collect();
+        parameters = model.complete(&applying)?;
+        for p in model.parameters.iter().filter(|p| matches!(p.kind, Kind::Subject { .. })) {
+            let (spelling, _) = self.nested(&p.name, parameters.text(&p.name))?;
+            parameters.0.insert(p.name.clone(), Value::Text(spelling));
+        }
+        let subject = model.build(&parameters, self)?;
+        Ok(Resolved { spelling: model.spell(&parameters), parameters, subject })
+    }
+
+    /// The subject that the parameter `parameter` names, and its one spelling.
+    fn nested(&self, parameter: &str, text: &str) -> Result<(String, Arc<dyn Subject>), RegistryError> {
+        let resolved = text.parse().and_then(|spelling| self.resolve(&spelling));
+        let wrong = |e| RegistryError::Nested { parameter: parameter.into(), error: Box::new(e) };
+        resolved.map(|r| (r.spelling, r.subject)).map_err(wrong)
+    }
+}
+
+/// A subject that was looked up and built.
+#[derive(Clone)]
+pub struct Resolved {
+    /// Its one spelling.
+    pub spelling: String,
+    /// A value for each parameter.
+    pub parameters: Parameters,
+    /// The subject.
+    pub subject: Arc<dyn Subject>,
 }
 
 /// A mistake in naming a subject or its parameters.
@@ -400,6 +539,34 @@ pub enum RegistryError {
         /// The part that is wrong.
         part: String,
     },
+    /// Parentheses without partners.
+    #[error(
+        "`{part}` in `{text}` has a parenthesis without its partner; write KEY=(NAME:KEY=VALUE,KEY=VALUE)"
+    )]
+    Parentheses {
+        /// The whole text.
+        text: String,
+        /// The part that is wrong.
+        part: String,
+    },
+    /// A parameter that has no default was not given.
+    #[error("`{model}` needs `{parameter}`, {doc}; write {model}:{parameter}=…")]
+    Missing {
+        /// Which model.
+        model: String,
+        /// Which parameter.
+        parameter: String,
+        /// What it is.
+        doc: String,
+    },
+    /// A nested subject is wrong.
+    #[error("in `{parameter}`: {error}")]
+    Nested {
+        /// The parameter that names it.
+        parameter: String,
+        /// What is wrong with it.
+        error: Box<RegistryError>,
+    },
     /// The parameters do not go together.
     #[error("`{model}` cannot be built: {message}")]
     Build {
@@ -408,6 +575,16 @@ pub enum RegistryError {
         /// Why.
         message: String,
     },
+}
+
+impl RegistryError {
+    /// What is wrong itself, wherever it is nested.
+    pub fn innermost(&self) -> &Self {
+        match self {
+            Self::Nested { error, .. } => error.innermost(),
+            _ => self,
+        }
+    }
 }
 
 fn suggestion(nearest: &Option<String>) -> String {

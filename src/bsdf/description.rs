@@ -87,6 +87,12 @@ impl Description {
         self
     }
 
+    /// With these functions.
+    pub fn has(mut self, has: Has) -> Self {
+        self.has = has;
+        self
+    }
+
     /// With this precision.
     pub fn precision(mut self, precision: Precision) -> Self {
         self.precision = precision;

@@ -124,15 +124,10 @@ impl CheckArgs {
             Err(e) => return Err(wrong(typed, Mistake::of_registry(span, &e)).into()),
         };
         let mut parameters: Vec<(Spanned<String>, Vec<_>)> = Vec::new();
-        let mut at = spelling.name.len() + 1;
-        let parts = self.subject.get(at..).unwrap_or("").split(',');
-        // Empty parts are not in the spelling.
-        let places = parts.filter_map(|part| {
-            let start = at;
-            at += part.len() + 1;
-            (!part.is_empty()).then_some((start, part))
-        });
-        for ((start, part), (key, value)) in places.zip(&spelling.parameters) {
+        let rest = (spelling.name.len() + 1).min(self.subject.len());
+        let parts = Spelling::parts(&self.subject[rest..]);
+        for ((start, part), (key, value)) in parts.into_iter().zip(&spelling.parameters) {
+            let start = rest + start;
             let key_span = start..start + key.len();
             if parameters.iter().any(|(k, _)| k.get_ref() == key) {
                 let mistake = Mistake::new(key_span, format!("`{key}` is given twice"), "the second time");

@@ -34,7 +34,8 @@ fn parameters(model: &Model) -> String {
     }
     let rows = model.parameters().iter().map(|p| {
         let (kind, range) = kind(p);
-        vec![p.name.clone(), kind.into(), p.default().to_string(), range, format!("{}{}", p.doc, when(p))]
+        let default = p.default().map_or_else(|| "none".into(), |v| v.to_string());
+        vec![p.name.clone(), kind.into(), default, range, format!("{}{}", p.doc, when(p))]
     });
     format!("{head}\n{}", table(&["parameter", "type", "default", "values", "what it is"], rows.collect()))
 }
@@ -43,6 +44,8 @@ fn kind(parameter: &Parameter) -> (&'static str, String) {
     match &parameter.kind {
         Kind::Number { min, max, .. } => ("number", format!("{min} to {max}")),
         Kind::Choice { options, .. } => ("choice", options.join(", ")),
+        Kind::Subject { .. } => ("subject", "NAME or (NAME:KEY=VALUE,…)".into()),
+        Kind::File => ("file", "a path".into()),
     }
 }
 

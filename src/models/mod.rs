@@ -2,6 +2,7 @@
 
 use crate::registry::Model;
 
+mod blend;
 mod conductor;
 mod dielectric;
 pub mod fresnel;
@@ -10,6 +11,7 @@ mod metal;
 pub mod microfacet;
 mod oren_nayar;
 
+pub use blend::Blend;
 pub use conductor::{Conductor, ConductorFresnel};
 pub use dielectric::Dielectric;
 pub use lambert::{HemisphereSampling, Lambert};
@@ -24,5 +26,6 @@ pub fn all() -> Vec<Model> {
         dielectric::model(),
         conductor::model(),
         microfacet::torrance_sparrow::model(),
+        blend::model(),
     ]
 }

@@ -6,7 +6,7 @@ use super::pairs::product;
 use super::variants::variants;
 use crate::bsdf::{Claims, Subject};
 use crate::evidence::{Company, Meter};
-use crate::registry::{Kind, Model, Parameters, Registry, RegistryError, Spelling, Value, nearest};
+use crate::registry::{Model, Parameters, Registry, Resolved, Spelling, Value, nearest};
 use std::collections::HashSet;
 use std::sync::Arc;
 
@@ -63,8 +63,9 @@ impl Combinations {
         let mut first_error = None;
         for row in product(&found.levels.clone()) {
             let given = values.iter().zip(&row).map(|(list, k)| list[*k].clone()).collect();
-            match build(model, given) {
-                Ok((parameters, subject)) => found.add(model, entry, &reference, parameters, subject),
+            let spelling = Spelling { name: model.name().into(), parameters: given };
+            match registry.resolve(&spelling) {
+                Ok(resolved) => found.add(registry, model, entry, &reference, resolved),
                 Err(e) => {
                     found.refused += 1;
                     found.all.push(None);
@@ -81,13 +82,12 @@ impl Combinations {
 
     fn add(
         &mut self,
+        registry: &Registry,
         model: &Model,
         entry: &Entry,
         reference: &Option<(String, Arc<dyn Subject>)>,
-        parameters: Parameters,
-        subject: Arc<dyn Subject>,
+        Resolved { spelling, parameters, subject }: Resolved,
     ) {
-        let spelling = model.spell(&parameters);
         if !self.spellings.insert(spelling.clone()) {
             self.all.push(None);
             return;
@@ -97,46 +97,27 @@ impl Combinations {
         self.all.push(Some(Combination {
             spelling,
             claims: entry.claims.over(own),
-            company: Company { variants: variants(model, &parameters), reference: reference.clone() },
+            company: Company {
+                variants: variants(registry, model, &parameters),
+                reference: reference.clone(),
+            },
             parameters,
             subject,
         }));
     }
 }
 
-/// A parameter that does not apply goes back to its default, so that a subject
-/// has one spelling.
-fn build(
-    model: &Model,
-    mut given: Vec<(String, Value)>,
-) -> Result<(Parameters, Arc<dyn Subject>), RegistryError> {
-    let parameters = model.complete(&given)?;
-    given.retain(|(name, _)| model.parameter(name).is_ok_and(|p| p.applies(&parameters)));
-    let parameters = model.complete(&given)?;
-    let subject = model.build(&parameters)?;
-    Ok((parameters, subject))
-}
-
-/// Choices that look like numbers are text to their model.
-fn as_declared(model: &Model, name: &str, value: &Value) -> Value {
-    match model.parameter(name).map(|p| &p.kind) {
-        Ok(Kind::Choice { .. }) => Value::Text(value.to_string()),
-        _ => value.clone(),
-    }
-}
-
 fn values(model: &Model, entry: &Entry, mistakes: &mut Vec<Mistake>) -> Vec<Vec<(String, Value)>> {
     let mut all = Vec::new();
     for (name, values) in &entry.parameters {
-        if model.parameter(name.get_ref()).is_err() {
+        let Ok(parameter) = model.parameter(name.get_ref()) else {
             mistakes.push(unknown_parameter(model, name));
             continue;
-        }
+        };
         let mut list = Vec::new();
         for value in values {
-            let given = (name.get_ref().clone(), as_declared(model, name.get_ref(), value.get_ref()));
-            match model.complete(std::slice::from_ref(&given)) {
-                Ok(_) => list.push(given),
+            match parameter.check(value.get_ref()) {
+                Ok(()) => list.push((name.get_ref().clone(), value.get_ref().clone())),
                 Err(e) => mistakes.push(Mistake::of_registry(value.span(), &e)),
             }
         }
@@ -162,11 +143,7 @@ fn reference(
     mistakes: &mut Vec<Mistake>,
 ) -> Option<(String, Arc<dyn Subject>)> {
     let text = entry.reference.as_ref()?;
-    let found = text.get_ref().parse::<Spelling>().and_then(|spelling| {
-        let model = registry.model(&spelling.name)?;
-        let given = spelling.parameters.iter().map(|(n, v)| (n.clone(), as_declared(model, n, v)));
-        let (parameters, subject) = build(model, given.collect())?;
-        Ok((model.spell(&parameters), subject))
-    });
+    let found = text.get_ref().parse::<Spelling>().and_then(|spelling| registry.resolve(&spelling));
+    let found = found.map(|r| (r.spelling, r.subject));
     found.map_err(|e| mistakes.push(Mistake::of_registry(text.span(), &e))).ok()
 }

@@ -34,16 +34,18 @@ impl Mistake {
 
     /// What the registry says of a name or value at `span`.
     pub fn of_registry(span: Range<usize>, error: &RegistryError) -> Self {
-        let label = match error {
+        let label = match error.innermost() {
             RegistryError::UnknownModel { .. } => "no such subject",
             RegistryError::UnknownParameter { .. } => "no such parameter",
             RegistryError::BadValue { .. } => "not a value of this parameter",
             RegistryError::Spelling { .. } => "not NAME:KEY=VALUE,…",
-            RegistryError::Build { .. } => "cannot be built",
+            RegistryError::Parentheses { .. } => "no partner",
+            RegistryError::Missing { .. } => "something is missing",
+            RegistryError::Build { .. } | RegistryError::Nested { .. } => "cannot be built",
         };
         let text = error.to_string();
         match text.rsplit_once("; ") {
-            Some((message, help)) if !matches!(error, RegistryError::Build { .. }) => {
+            Some((message, help)) if !matches!(error.innermost(), RegistryError::Build { .. }) => {
                 Self::new(span, message, label).help(help)
             }
             _ => Self::new(span, text, label),

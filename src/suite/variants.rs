@@ -1,24 +1,25 @@
 //! The same model with a parameter changed, for the `sensitivity` check.
 
 use crate::evidence::Variant;
-use crate::registry::{Kind, Model, Parameter, Parameters, Role, Value};
+use crate::registry::{Kind, Model, Parameter, Parameters, Registry, Role, Value};
 use std::sync::Arc;
 
 /// For each parameter that applies: other values, and its limit if it has one.
-pub(super) fn variants(model: &Model, parameters: &Parameters) -> Vec<Variant<'static>> {
+pub(super) fn variants(registry: &Registry, model: &Model, parameters: &Parameters) -> Vec<Variant<'static>> {
     let mut all = Vec::new();
     for parameter in model.parameters().iter().filter(|p| p.applies(parameters)) {
         for value in other_values(parameter, parameters) {
             let mut changed = parameters.clone();
             changed.0.insert(parameter.name.clone(), value);
-            all.push(variant(model, parameters, parameter, changed, None));
+            all.push(variant(registry, model, parameters, parameter, changed, None));
         }
     }
-    all.extend(limits(model, parameters));
+    all.extend(limits(registry, model, parameters));
     all
 }
 
 fn variant(
+    registry: &Registry,
     model: &Model,
     parameters: &Parameters,
     parameter: &Parameter,
@@ -27,8 +28,8 @@ fn variant(
 ) -> Variant<'static> {
     let text = |p: &Parameters| p.0.get(&parameter.name).map(Value::to_string).unwrap_or_default();
     let (from, to) = (text(parameters), text(&changed));
-    let model = model.clone();
-    let build = Arc::new(move || model.build(&changed).ok());
+    let (model, registry) = (model.clone(), registry.clone());
+    let build = Arc::new(move || model.build(&changed, &registry).ok());
     Variant { parameter: parameter.name.clone(), from, to, limit, build }
 }
 
@@ -50,7 +51,7 @@ fn other_values(parameter: &Parameter, parameters: &Parameters) -> Vec<Value> {
 
 /// Where α → 0, all roughnesses go to their minimum together: one alone leaves
 /// the lobe wide. Where η can be 1, it goes there.
-fn limits(model: &Model, parameters: &Parameters) -> Vec<Variant<'static>> {
+fn limits(registry: &Registry, model: &Model, parameters: &Parameters) -> Vec<Variant<'static>> {
     let with_role =
         |role| move |p: &&Parameter| p.role == Some(role) && p.applies(parameters) && min(p).is_some();
     let mut all = Vec::new();
@@ -60,12 +61,12 @@ fn limits(model: &Model, parameters: &Parameters) -> Vec<Variant<'static>> {
         for p in &rough {
             changed.0.extend(min(p).map(|min| (p.name.clone(), Value::Number(min))));
         }
-        all.push(variant(model, parameters, first, changed, Some(Role::Roughness)));
+        all.push(variant(registry, model, parameters, first, changed, Some(Role::Roughness)));
     }
     for p in model.parameters().iter().filter(with_role(Role::Eta)).filter(|p| min(p) == Some(1.0)) {
         let mut changed = parameters.clone();
         changed.0.insert(p.name.clone(), Value::Number(1.0));
-        all.push(variant(model, parameters, p, changed, Some(Role::Eta)));
+        all.push(variant(registry, model, parameters, p, changed, Some(Role::Eta)));
     }
     all
 }
@@ -73,6 +74,6 @@ fn limits(model: &Model, parameters: &Parameters) -> Vec<Variant<'static>> {
 fn min(parameter: &Parameter) -> Option<f64> {
     match parameter.kind {
         Kind::Number { min, .. } => Some(min),
-        Kind::Choice { .. } => None,
+        _ => None,
     }
 }

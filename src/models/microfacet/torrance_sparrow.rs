@@ -358,9 +358,7 @@ mod tests {
     fn unbuildable_parameters_name_the_way_out() {
         let build = |text: &str| {
             let spelling: Spelling = text.parse().unwrap();
-            let registry = Registry::builtin();
-            let model = registry.model(&spelling.name).unwrap().clone();
-            model.build(&model.complete(&spelling.parameters).unwrap()).map(|s| s.describe())
+            Registry::builtin().resolve(&spelling).map(|r| r.subject.describe())
         };
         let message = |text: &str| build(text).unwrap_err().to_string();
         assert!(message("torrance-sparrow:distribution=gaussian").contains("sampling=normals"));
