@@ -13,6 +13,7 @@ pub mod checks;
 pub mod cli;
 pub mod engine;
 pub mod evidence;
+pub mod lecture;
 mod measure;
 pub mod models;
 pub mod registry;

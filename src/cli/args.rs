@@ -1,6 +1,6 @@
 //! What may be typed.
 
-use super::{check, completions, list, report, run, schema};
+use super::{check, completions, figures, list, report, run, schema};
 use crate::checks;
 use crate::registry::nearest;
 use crate::report::Which;
@@ -35,6 +35,8 @@ pub enum Command {
     List(list::ListArgs),
     /// Draw the pictures of a saved report again.
     Report(report::ReportArgs),
+    /// Draw the figures of a lecture on reflection, from the built-in models.
+    Figures(figures::FiguresArgs),
     /// Print the JSON Schema of report.json.
     Schema(schema::SchemaArgs),
     /// Print completions for a shell.

@@ -5,6 +5,7 @@ mod check;
 mod completions;
 mod error;
 mod exit;
+mod figures;
 mod list;
 mod main;
 mod output;

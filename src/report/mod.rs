@@ -10,6 +10,7 @@ mod disc_leaves;
 mod figure;
 mod folder;
 mod json;
+mod line_plot;
 mod numbers;
 mod plots;
 mod raster;
@@ -28,6 +29,7 @@ pub use folder::{REPORT, draw_results, evidence_of, redraw, write_report};
 pub use json::{
     AttemptRow, CheckResult, Diagnosis, Machine, Report, SCHEMA_VERSION, SubjectId, Summary, WoAngles,
 };
+pub use line_plot::{Line, LinePlot};
 pub use plots::{Pictured, Which, draw};
 pub use reciprocity_map::picture as reciprocity_picture;
 pub use saved::{FileError, evidence_path, read_evidence, write_evidence, write_whole};
