@@ -35,12 +35,7 @@ fn parts(criterion: &mut Criterion) {
     });
     let directions = samples.wi.clone();
     let mut mapped = Vec::new();
-    group.bench_function("map to the square", |b| {
-        b.iter(|| {
-            mapped.clear();
-            mapped.extend(directions.iter().map(|wi| chart.to_point(*wi)));
-        })
-    });
+    group.bench_function("map to the square", |b| b.iter(|| chart.to_points(&directions, &mut mapped)));
     let mut leaves = Vec::new();
     group.bench_function("find the cell", |b| b.iter(|| partition.locate_all(&points, &mut leaves)));
     group.bench_function("draw u", |b| b.iter(|| StreamKey::new(1).block(0).fill(false, &mut u)));

@@ -22,6 +22,9 @@ const MOST_DISCRETE: usize = 16;
 /// Larger values count as this one, so that sums of squares stay finite.
 const LARGEST: f64 = 1e140;
 
+/// Partial sums side by side: two vectors of the widest registers.
+const LANES: usize = 8;
+
 /// After so many samples at pdf = 0 no further one is looked at.
 const ENOUGH: u64 = 1000;
 
@@ -81,18 +84,15 @@ impl Sums {
     fn of(rows: &[f64], channels: usize, factor: impl Fn(usize) -> f64) -> Self {
         let mut sums = Self::new(channels);
         sums.count = (rows.len() / channels) as u64;
-        let mut largest = 0.0f64;
         for c in 0..channels {
-            let (mut sum, mut square) = (0.0, 0.0);
-            for (k, value) in rows.iter().skip(c).step_by(channels).enumerate() {
-                let value = (value * factor(k)).min(LARGEST);
-                sum += value;
-                square += value * value;
-                largest = largest.max(value);
-            }
+            // One channel is a stride that the compiler knows.
+            let [sum, square, largest] = match channels {
+                1 => column(rows, 1, 0, &factor),
+                n => column(rows, n, c, &factor),
+            };
             (sums.sum[c], sums.square[c]) = (sum, square);
+            sums.largest = Figure(sums.largest.0.max(largest));
         }
-        sums.largest = Figure(largest);
         sums
     }
 
@@ -102,6 +102,31 @@ impl Sums {
         let mean = self.sum[channel] / n;
         (mean, (self.square[channel] / n - mean * mean).max(0.0))
     }
+}
+
+/// Sum, sum of squares and maximum of column `c`, each row times its factor, in
+/// [`LANES`] partial sums side by side: a single one waits for each addition.
+#[inline(always)]
+fn column(rows: &[f64], channels: usize, c: usize, factor: &impl Fn(usize) -> f64) -> [f64; 3] {
+    let (mut sum, mut square, mut largest) = ([0.0; LANES], [0.0; LANES], [0.0f64; LANES]);
+    let n = rows.len() / channels;
+    let mut add = |lane: usize, k: usize| {
+        let value = rows[k * channels + c] * factor(k);
+        let value = if value < LARGEST { value } else { LARGEST };
+        sum[lane] += value;
+        square[lane] += value * value;
+        largest[lane] = if value > largest[lane] { value } else { largest[lane] };
+    };
+    for chunk in 0..n / LANES {
+        for lane in 0..LANES {
+            add(lane, chunk * LANES + lane);
+        }
+    }
+    for k in n / LANES * LANES..n {
+        add(k % LANES, k);
+    }
+    let total = |lanes: [f64; LANES]| lanes.iter().sum();
+    [total(sum), total(square), largest.into_iter().fold(0.0, f64::max)]
 }
 
 /// What `samples` draws of one attempt gave.
@@ -170,6 +195,15 @@ fn cosine_direction(setup: &Setup, u: [f64; 3]) -> Direction {
     Direction::new(r * cos, r * sin, if other { -z } else { z })
 }
 
+/// What counting needs to know of a leaf.
+#[derive(Clone, Copy)]
+struct LeafCell {
+    /// Its coarse cell of the table of serial pairs.
+    serial: u8,
+    /// Its mass is exactly 0.
+    empty: bool,
+}
+
 /// Scratch space of a block.
 #[derive(Default)]
 struct Scratch {
@@ -178,6 +212,7 @@ struct Scratch {
     points: Vec<[f64; 2]>,
     leaves: Vec<u32>,
     balance: Vec<f64>,
+    serial: Vec<u8>,
     value: Vec<f64>,
     density: Vec<f64>,
     lights: Vec<Direction>,
@@ -223,9 +258,11 @@ impl Draws {
         samples: u64,
     ) -> Result<(), Halt> {
         let mut scratch = Scratch::default();
-        let serial_cell = serial_cells(partition);
+        let serial = serial_cells(partition);
+        let cell = |(serial, pdf): (u8, &f64)| LeafCell { serial, empty: *pdf == 0.0 };
+        let cells: Vec<LeafCell> = serial.into_iter().zip(pdf_of_leaf).map(cell).collect();
         while self.samples < samples {
-            self.block(meter, setup, partition, pdf_of_leaf, &serial_cell, &mut scratch)?;
+            self.block(meter, setup, partition, &cells, &mut scratch)?;
         }
         Ok(())
     }
@@ -235,34 +272,35 @@ impl Draws {
         meter: &Meter,
         setup: &Setup,
         partition: &Partition,
-        pdf_of_leaf: &[f64],
-        serial_cell: &[u8],
+        cells: &[LeafCell],
         scratch: &mut Scratch,
     ) -> Result<(), Halt> {
         let stage = if self.attempt == 0 { "draws" } else { "confirmation" };
         let mut stream = setup.key.with("stage", stage).block(self.samples / BLOCK);
-        let Scratch { u, samples, points, leaves, balance, value, density, lights } = scratch;
+        let Scratch { u, samples, points, leaves, balance, serial, value, density, lights } = scratch;
         u.resize(BLOCK as usize * meter.dimensions(), 0.0);
         stream.fill(meter.coarse_u(), u);
         meter.sample(setup.wo, u, setup.transport, samples)?;
 
-        points.clear();
-        points.extend(samples.wi.iter().map(|wi| partition.chart().to_point(*wi)));
+        partition.chart().to_points(&samples.wi, points);
         partition.locate_all(points, leaves);
 
         let cosine = CosineDensity::new(setup);
+        // Of no sample, whose weights are 0, it is 0 too.
+        let share = |(pdf, wi): (&f64, &Direction)| pdf / (pdf + cosine.at(*wi)).max(f64::MIN_POSITIVE);
+        balance.clear();
+        balance.extend(samples.pdf.iter().zip(&samples.wi).map(share));
+
         let row = |k: usize| &u[k * meter.dimensions()..(k + 1) * meter.dimensions()];
         let has_pdf = meter.description.has.pdf;
-        balance.clear();
-        let mut previous: Option<u8> = None;
+        serial.clear();
         for (k, leaf) in leaves.iter().enumerate() {
             let lobe = samples.lobe[k];
-            let (wi, pdf) = (samples.wi[k], samples.pdf[k]);
-            // Weights of no sample are 0, and the discrete are met by no cosine.
-            balance.push(if lobe.is_continuous() { pdf / (pdf + cosine.at(wi)) } else { 1.0 });
             if !lobe.is_continuous() {
                 if lobe.is_valid() {
-                    self.add_discrete(setup, wi, lobe, pdf, samples.weight_of(k));
+                    // No cosine meets it.
+                    balance[k] = 1.0;
+                    self.add_discrete(setup, samples.wi[k], lobe, samples.pdf[k], samples.weight_of(k));
                 } else {
                     self.none += 1;
                 }
@@ -270,21 +308,19 @@ impl Draws {
             }
             let leaf = *leaf as usize;
             self.counts[leaf] += 1;
-            let looks = has_pdf && self.zero_pdf.broken < ENOUGH;
-            if looks && pdf_of_leaf[leaf] == 0.0 {
+            let cell = cells[leaf];
+            serial.push(cell.serial);
+            if cell.empty && has_pdf && self.zero_pdf.broken < ENOUGH {
+                let wi = samples.wi[k];
                 let there = density_near(meter, setup, wi)?;
                 self.zero_pdf.look(if there > 0.0 { 0.0 } else { 1.0 }, || {
-                    Place::pair(setup.wo, wi).drawn_by(row(k)).value("pdf", 0.0).value("sample.pdf", pdf)
+                    let place = Place::pair(setup.wo, wi).drawn_by(row(k));
+                    place.value("pdf", 0.0).value("sample.pdf", samples.pdf[k])
                 });
             }
-            let cell = serial_cell[leaf];
-            previous = match previous {
-                Some(before) => {
-                    self.serial[usize::from(before) * SERIAL + usize::from(cell)] += 1;
-                    None
-                }
-                None => Some(cell),
-            };
+        }
+        for [before, after] in serial.as_chunks().0 {
+            self.serial[usize::from(*before) * SERIAL + usize::from(*after)] += 1;
         }
         let channels = samples.channels;
         let weight = Sums::of(&samples.weight, channels, |_| 1.0);

@@ -321,6 +321,9 @@ impl<'a> Meter<'a> {
         let tolerance = length_tolerance(self.description.precision);
         let mut sanity = self.sanity.borrow_mut();
         sanity.checked += rows as u64;
+        if is_sound(out, tolerance) {
+            return Ok(());
+        }
         for k in 0..rows {
             if !out.lobe[k].is_valid() {
                 continue;
@@ -328,10 +331,6 @@ impl<'a> Meter<'a> {
             let (wi, pdf) = (out.wi[k], out.pdf[k]);
             let length = (wi.dot(wi) - 1.0).abs();
             let weights = &out.weight[k * out.channels..(k + 1) * out.channels];
-            let heavy = weights.iter().all(|w| *w >= 0.0 && *w < f64::INFINITY);
-            if length <= 2.0 * tolerance && heavy && pdf > 0.0 && pdf < f64::INFINITY {
-                continue;
-            }
             if pdf == 0.0 {
                 // Integrators drop such a draw: it is no sample.
                 out.lobe[k] = Lobe::NONE;
@@ -360,6 +359,19 @@ impl<'a> Meter<'a> {
         }
         Ok(())
     }
+}
+
+/// Whether no row needs a closer look, told without a branch a row.
+fn is_sound(samples: &Samples, tolerance: f64) -> bool {
+    let positive = |x: f64| (x > 0.0) & (x < f64::INFINITY);
+    let rows = samples.wi.iter().zip(&samples.pdf).zip(&samples.lobe);
+    pulp::Arch::new().dispatch(|| {
+        let drawn = rows.fold(true, |sound, ((wi, pdf), lobe)| {
+            let unit = (wi.dot(*wi) - 1.0).abs() <= 2.0 * tolerance;
+            sound & (!lobe.is_valid() | (unit & positive(*pdf)))
+        });
+        samples.weight.iter().fold(drawn, |sound, w| sound & (*w >= 0.0) & (*w < f64::INFINITY))
+    })
 }
 
 fn guarded<T>(

@@ -64,6 +64,14 @@ impl Chart {
         [if d.z > 0.0 { u } else { 1.0 + u }, v]
     }
 
+    /// The points of many directions, as [`to_point`](Self::to_point), in the widest
+    /// vectors of this machine: the arithmetic is the same, so are the bits.
+    pub fn to_points(&self, directions: &[Direction], points: &mut Vec<Point>) {
+        points.clear();
+        points.resize(directions.len(), [0.0; 2]);
+        pulp::Arch::new().dispatch(Many { chart: *self, directions, points });
+    }
+
     /// The unit direction of a point.
     #[inline]
     pub fn to_direction(&self, [u, v]: Point) -> Direction {
@@ -105,6 +113,39 @@ impl Chart {
             (self.sin * x + self.cos * y) * stretch,
             z,
         ))
+    }
+}
+
+/// Arguments of [`Chart::to_points`].
+struct Many<'a> {
+    chart: Chart,
+    directions: &'a [Direction],
+    points: &'a mut [Point],
+}
+
+impl pulp::NullaryFnOnce for Many<'_> {
+    type Output = ();
+
+    #[inline(always)]
+    fn call(self) {
+        let (many, rest) = self.directions.as_chunks::<8>();
+        let (to_many, to_rest) = self.points.as_chunks_mut::<8>();
+        for (d, p) in many.iter().zip(to_many) {
+            let x: [f64; 8] = std::array::from_fn(|k| d[k].x);
+            let y: [f64; 8] = std::array::from_fn(|k| d[k].y);
+            let z: [f64; 8] = std::array::from_fn(|k| d[k].z);
+            let mut u = [0.0; 8];
+            let mut v = [0.0; 8];
+            for k in 0..8 {
+                [u[k], v[k]] = self.chart.to_point(Direction::new(x[k], y[k], z[k]));
+            }
+            for k in 0..8 {
+                p[k] = [u[k], v[k]];
+            }
+        }
+        for (d, p) in rest.iter().zip(to_rest) {
+            *p = self.chart.to_point(*d);
+        }
     }
 }
 
@@ -158,6 +199,22 @@ mod tests {
             prop_assert!((u - u2).abs() < 1e-14 && (v - v2).abs() < 1e-14, "{u} {v} -> {u2} {v2}");
             let back = chart.from_disc(chart.to_disc(d), d.z > 0.0).unwrap();
             prop_assert!(back.angle(d) < 1e-14);
+        }
+    }
+
+    /// Many at once give the same bits as one by one, in whole vectors and in the rest.
+    #[test]
+    fn many_points_are_the_points_of_each() {
+        let chart = Chart::new(0.7);
+        let spiral = |k: u32| Direction::from_angles(f64::from(k) * 0.1, f64::from(k * k));
+        let edges = [Direction::NORMAL, -Direction::NORMAL, Direction::new(1.0, 0.0, 0.0)];
+        for n in [0, 7, 8, 29] {
+            let mut directions: Vec<_> = (0..n).map(spiral).collect();
+            directions.extend(edges);
+            let mut points = Vec::new();
+            chart.to_points(&directions, &mut points);
+            let each: Vec<_> = directions.iter().map(|d| chart.to_point(*d)).collect();
+            assert_eq!(points, each);
         }
     }
 
