@@ -29,6 +29,11 @@ const LINES: usize = 6;
 const LINE_POINTS: usize = 128;
 const HALVINGS: usize = 24;
 
+/// Towards the ends of a line it is scanned at 2^−8, where the even scan ends, to
+/// 2^−28 from them: a lobe drawn more rarely does not show in the density of others.
+const RIM: u32 = 8;
+const RIM_END: u32 = 29;
+
 /// Values of the unused random numbers at which a branch is looked for.
 const BRANCHES: usize = 64;
 
@@ -159,51 +164,67 @@ fn slopes(meter: &Meter, setup: &Setup) -> Result<Vec<Point>, Halt> {
 }
 
 /// Whether wi jumps anywhere on lines through the unit square: a step that
-/// does not shrink when it is halved again and again.
+/// does not shrink when it is halved again and again. Looked for in even steps,
+/// and in ones that halve towards both ends, where a rare lobe may have its share.
 fn has_jump(meter: &Meter, setup: &Setup, active: [usize; 2]) -> Result<bool, Halt> {
     let mut stream = setup.key.with("stage", "jumps").block(0);
-    let mut samples = Samples::default();
+    let even: Vec<f64> = (0..LINE_POINTS).map(|k| (k as f64 + 0.5) / LINE_POINTS as f64).collect();
+    let low: Vec<f64> = (RIM..RIM_END).rev().map(|k| (-f64::from(k)).exp2()).collect();
+    let high: Vec<f64> = (RIM..RIM_END).map(|k| 1.0 - (-f64::from(k)).exp2()).collect();
     for axis in active {
         for _ in 0..LINES {
             let line: Vec<f64> = (0..meter.dimensions()).map(|_| 0.01 + 0.98 * stream.next_f64()).collect();
-            let row = |s: f64| {
-                let mut row = line.clone();
-                row[axis] = s;
-                row
-            };
-            let places: Vec<f64> = (0..LINE_POINTS).map(|k| (k as f64 + 0.5) / LINE_POINTS as f64).collect();
-            let u: Vec<f64> = places.iter().flat_map(|s| row(*s)).collect();
-            meter.sample(setup.wo, &u, setup.transport, &mut samples)?;
-            let widest = (1..LINE_POINTS)
-                .filter(|k| samples.lobe[*k].is_valid() && samples.lobe[k - 1].is_valid())
-                .map(|k| ((samples.wi[k] - samples.wi[k - 1]).length(), k))
-                .max_by(|a, b| a.0.total_cmp(&b.0));
-            let Some((start, k)) = widest else { continue };
-            let (mut lo, mut hi) = (places[k - 1], places[k]);
-            let mut step = start;
-            for _ in 0..HALVINGS {
-                let middle = 0.5 * (lo + hi);
-                let u: Vec<f64> = [lo, middle, hi].iter().flat_map(|s| row(*s)).collect();
-                meter.sample(setup.wo, &u, setup.transport, &mut samples)?;
-                if !samples.lobe.iter().all(|l| l.is_valid()) {
-                    step = 0.0;
-                    break;
+            for places in [&even, &low, &high] {
+                if jumps_between(meter, setup, &line, axis, places)? {
+                    return Ok(true);
                 }
-                let halves = [1, 2].map(|r| (samples.wi[r] - samples.wi[r - 1]).length());
-                if halves[0] > halves[1] {
-                    hi = middle
-                } else {
-                    lo = middle
-                }
-                step = halves[0].max(halves[1]);
-            }
-            // 24 halvings shrink a smooth step by 6e-8, a square root's by 2e-4.
-            if step > 0.01 * start {
-                return Ok(true);
             }
         }
     }
     Ok(false)
+}
+
+/// Whether the widest step of wi between `places` on the line along `axis` is a jump.
+fn jumps_between(
+    meter: &Meter,
+    setup: &Setup,
+    line: &[f64],
+    axis: usize,
+    places: &[f64],
+) -> Result<bool, Halt> {
+    let mut samples = Samples::default();
+    let row = |s: f64| {
+        let mut row = line.to_vec();
+        row[axis] = s;
+        row
+    };
+    let u: Vec<f64> = places.iter().flat_map(|s| row(*s)).collect();
+    meter.sample(setup.wo, &u, setup.transport, &mut samples)?;
+    let widest = (1..places.len())
+        .filter(|k| samples.lobe[*k].is_valid() && samples.lobe[k - 1].is_valid())
+        .map(|k| ((samples.wi[k] - samples.wi[k - 1]).length(), k))
+        .max_by(|a, b| a.0.total_cmp(&b.0));
+    let Some((start, k)) = widest else { return Ok(false) };
+    let (mut lo, mut hi) = (places[k - 1], places[k]);
+    let mut step = start;
+    for _ in 0..HALVINGS {
+        let middle = 0.5 * (lo + hi);
+        let u: Vec<f64> = [lo, middle, hi].iter().flat_map(|s| row(*s)).collect();
+        meter.sample(setup.wo, &u, setup.transport, &mut samples)?;
+        if !samples.lobe.iter().all(|l| l.is_valid()) {
+            return Ok(false);
+        }
+        let halves = [1, 2].map(|r| (samples.wi[r] - samples.wi[r - 1]).length());
+        if halves[0] > halves[1] {
+            hi = middle
+        } else {
+            lo = middle
+        }
+        step = halves[0].max(halves[1]);
+    }
+    // 24 halvings shrink a smooth step by 6e-8, a square root's by 2e-4. Steps
+    // of rounding do not shrink.
+    Ok(step > 0.01 * start && start > 1e-6)
 }
 
 /// Points whose other origins are looked for, draws among which, starts for

@@ -46,6 +46,15 @@ pub(super) fn sample_cosine(u: &[f64]) -> Direction {
     Direction::new(r * cos, r * sin, (1.0 - u[0]).sqrt())
 }
 
+/// A direction of the upper hemisphere with density 1/2π.
+pub(super) fn sample_uniform(u: &[f64]) -> Direction {
+    // z in (0, 1], so that u = 0 does not touch the horizon.
+    let z = 1.0 - u[0];
+    let r = (u[0] * (1.0 + z)).sqrt();
+    let (sin, cos) = (2.0 * PI * u[1]).sin_cos();
+    Direction::new(r * cos, r * sin, z)
+}
+
 impl Bsdf for Lambert {
     fn describe(&self) -> Description {
         Description::new("lambert").dimensions(2).claims(|c| {
@@ -75,13 +84,7 @@ impl Bsdf for Lambert {
         }
         let wi = match self.sampling {
             HemisphereSampling::Cosine => sample_cosine(u),
-            HemisphereSampling::Uniform => {
-                // z in (0, 1], so that u = 0 does not touch the horizon.
-                let z = 1.0 - u[0];
-                let r = (u[0] * (1.0 + z)).sqrt();
-                let (sin, cos) = (2.0 * PI * u[1]).sin_cos();
-                Direction::new(r * cos, r * sin, z)
-            }
+            HemisphereSampling::Uniform => sample_uniform(u),
         };
         let pdf = Bsdf::pdf(self, wo, wi, transport);
         let weight = Bsdf::eval(self, wo, wi, transport) * (wi.z / pdf);

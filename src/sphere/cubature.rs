@@ -42,6 +42,10 @@ const NONCENTRALITY: f64 = 0.1;
 /// axes: then no lobe that the pilot has seen is narrower than the rule sees.
 const FILL: f64 = 1.0 / 3.0;
 
+/// The same for half of the points: of 8 even ones, half lie in so little once in
+/// a hundred cells.
+const CROWDED: f64 = 1.0 / 30.0;
+
 /// Fewer pilot points than this say nothing of a lobe's width.
 const TELLING: usize = 8;
 
@@ -202,21 +206,25 @@ fn first_patches(partition: &Partition, pilot: &[Point], markers: &[Marker]) -> 
 }
 
 /// The axis on which the pilot points span the least share of the patch, if
-/// that is too little.
+/// that is too little; so too if half of them do, as at the end of a long cell
+/// that a few others fill.
 fn unfilled_axis(patch: &Patch) -> Option<u8> {
-    if patch.pilot.len() < TELLING {
+    let points = patch.pilot.len();
+    if points < TELLING {
         return None;
     }
-    let fill = |axis: usize| {
-        let (lo, hi) = patch
-            .pilot
-            .iter()
-            .fold((f64::INFINITY, f64::NEG_INFINITY), |(lo, hi), p| (lo.min(p[axis]), hi.max(p[axis])));
-        (hi - lo) / patch.cell.width(axis)
+    let span = |axis: usize, share: usize| {
+        let mut at: Vec<f64> = patch.pilot.iter().map(|p| p[axis]).collect();
+        at.sort_by(f64::total_cmp);
+        let spans = at.iter().zip(&at[share - 1..]).map(|(a, b)| b - a);
+        spans.fold(f64::INFINITY, f64::min) / patch.cell.width(axis)
     };
-    let fills = [fill(0), fill(1)];
-    let axis = usize::from(fills[1] < fills[0]);
-    (fills[axis] < FILL).then_some(axis as u8)
+    let least = |share: usize, fill: f64| {
+        let spans = [span(0, share), span(1, share)];
+        let axis = usize::from(spans[1] < spans[0]);
+        (spans[axis] < fill).then_some(axis as u8)
+    };
+    least(points, FILL).or_else(|| least(points.div_ceil(2), CROWDED))
 }
 
 /// Both halves of a patch across its axis.
@@ -456,6 +464,25 @@ mod tests {
         let (total, _) = run(vec![], &[marker], &f).total(0);
         // Patches beside the lobe may miss the outermost of its tail.
         assert!((total - 1.0).abs() < 1e-5, "{total}");
+    }
+
+    /// A few points that fill the cell do not hide the crowd of the others.
+    #[test]
+    fn finds_a_narrow_lobe_in_a_cell_that_other_points_fill() {
+        let chart = Chart::new(0.0);
+        let f = von_mises_fisher(1e8, Direction::from_angles(1.0, 2.0));
+        let at = |theta, phi| chart.to_point(Direction::from_angles(theta, phi));
+        let crowd = (0..20).map(|k| 1e-5 * (f64::from(k) - 9.5)).map(|x| at(1.0 + x, 2.0 - x));
+        let others =
+            (0..8).map(|k| (0.6 * f64::from(k)).sin_cos()).map(|(s, c)| at(1.0 + 0.04 * s, 2.0 + 0.04 * c));
+        let pilot: Vec<Point> = crowd.chain(others).collect();
+        let partition = Partition::build(chart, vec![], 1);
+        let lobe = |wi: &[Direction], out: &mut [f64]| {
+            wi.iter().zip(out).for_each(|(wi, out)| *out = f(*wi));
+            Ok::<_, ()>(())
+        };
+        let (total, _) = integrate(&partition, &pilot, &[], &goal(1), lobe).unwrap().total(0);
+        assert!((total - 1.0).abs() < 1e-4, "{total}");
     }
 
     #[test]

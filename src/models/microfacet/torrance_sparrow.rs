@@ -117,7 +117,8 @@ impl TorranceSparrow {
         Ok(Self { distribution, masking, fresnel, sampling })
     }
 
-    fn channels(&self) -> usize {
+    /// 1, or one a wavelength of a metal.
+    pub(super) fn channels(&self) -> usize {
         match self.fresnel {
             Fresnel::Conductor(_) => Metal::WAVELENGTHS.len(),
             _ => 1,
@@ -126,7 +127,7 @@ impl TorranceSparrow {
 
     /// F times `scale`, at the angle between a direction and its facet.
     #[inline]
-    fn reflected(&self, cos: f64, scale: f64) -> Spectrum {
+    pub(super) fn reflected(&self, cos: f64, scale: f64) -> Spectrum {
         match self.fresnel {
             Fresnel::None => Spectrum::from(scale),
             Fresnel::Schlick(f0) => Spectrum::from(scale * fresnel::schlick(cos.min(1.0), f0)),
