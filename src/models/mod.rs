@@ -2,21 +2,29 @@
 
 use crate::registry::Model;
 
+mod ashikhmin_shirley;
 mod blend;
 mod conductor;
+mod cosine_lobe;
 mod dielectric;
 pub mod fresnel;
 mod lambert;
 mod metal;
 pub mod microfacet;
+mod mixture;
 mod oren_nayar;
+mod phong;
+mod ward;
 
+pub use ashikhmin_shirley::AshikhminShirley;
 pub use blend::Blend;
 pub use conductor::{Conductor, ConductorFresnel};
 pub use dielectric::Dielectric;
 pub use lambert::{HemisphereSampling, Lambert};
 pub use metal::Metal;
 pub use oren_nayar::OrenNayar;
+pub use phong::Phong;
+pub use ward::Ward;
 
 /// Every built-in model, in the order in which `gonio list` shows them.
 pub fn all() -> Vec<Model> {
@@ -26,6 +34,9 @@ pub fn all() -> Vec<Model> {
         dielectric::model(),
         conductor::model(),
         microfacet::torrance_sparrow::model(),
+        phong::model(),
+        ward::model(),
+        ashikhmin_shirley::model(),
         blend::model(),
     ]
 }
