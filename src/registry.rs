@@ -123,7 +123,8 @@ impl Parameter {
 
     /// Whether it matters for a subject with these parameters.
     pub fn applies(&self, parameters: &Parameters) -> bool {
-        let chosen = |(name, values): &(String, Vec<String>)| values.iter().any(|v| v == parameters.text(name));
+        let chosen =
+            |(name, values): &(String, Vec<String>)| values.iter().any(|v| v == parameters.text(name));
         self.only_when.as_ref().is_none_or(chosen) && self.only_if.is_none_or(|c| (c.holds)(parameters))
     }
 

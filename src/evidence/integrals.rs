@@ -243,6 +243,8 @@ fn markers(
         .enumerate()
         .map(|(k, wi)| Marker {
             at: chart.to_point(*wi),
+            // The distance at which the sampler's next point is to be expected.
+            reach: 0.5 / (density[k] * STERADIANS * pilot.len().max(1) as f64).sqrt().max(1e3),
             density: density[k],
             value: value[k * channels..][..channels].iter().sum::<f64>() * wi.abs_cos_theta(),
         })

@@ -158,8 +158,8 @@ fn slopes(meter: &Meter, setup: &Setup) -> Result<Vec<Point>, Halt> {
     Ok(points)
 }
 
-/// Whether wi jumps anywhere on lines through the unit square: a step that
-/// does not shrink when it is halved again and again.
+/// Whether wi jumps anywhere on lines through the unit square: to another kind
+/// of lobe, or by a step that does not shrink when it is halved again and again.
 fn has_jump(meter: &Meter, setup: &Setup, active: [usize; 2]) -> Result<bool, Halt> {
     let mut stream = setup.key.with("stage", "jumps").block(0);
     let mut samples = Samples::default();
@@ -174,6 +174,10 @@ fn has_jump(meter: &Meter, setup: &Setup, active: [usize; 2]) -> Result<bool, Ha
             let places: Vec<f64> = (0..LINE_POINTS).map(|k| (k as f64 + 0.5) / LINE_POINTS as f64).collect();
             let u: Vec<f64> = places.iter().flat_map(|s| row(*s)).collect();
             meter.sample(setup.wo, &u, setup.transport, &mut samples)?;
+            let mut lobes = samples.lobe.iter().filter(|l| l.is_valid());
+            if lobes.next().is_some_and(|first| lobes.any(|l| l != first)) {
+                return Ok(true);
+            }
             let widest = (1..LINE_POINTS)
                 .filter(|k| samples.lobe[*k].is_valid() && samples.lobe[k - 1].is_valid())
                 .map(|k| ((samples.wi[k] - samples.wi[k - 1]).length(), k))

@@ -82,7 +82,9 @@ impl AshikhminShirley {
     #[inline]
     fn shares(&self, wo: Direction) -> [f64; 2] {
         let diffuse = self.rd * (1.0 - self.rs) * Self::rise(wo.z);
-        mixture::shares([fresnel::schlick(wo.z.min(1.0), self.rs), diffuse])
+        // Even where F(θo) = 0, some facets reflect.
+        let specular = fresnel::schlick(wo.z.min(1.0), self.rs).max(f64::MIN_POSITIVE);
+        mixture::shares([specular, diffuse])
     }
 }
 

@@ -3,12 +3,20 @@
 //! its share as probability, the random number that chose it is used again, and
 //! pdf is Σ share · density whichever lobe was drawn from.
 
-/// What part of their sum each of the `weights` ≥ 0 is; all of it goes to the
-/// first where the sum is 0.
+/// A lobe that is there at all is drawn at least so often: a rarer one would only
+/// be found by luck, with large weights where it overlaps with others.
+const LEAST: f64 = 0.05;
+
+/// Shares of lobes with these `weights` ≥ 0: their parts of the sum, raised to
+/// [`LEAST`] where they are not 0. All of it goes to the first where the sum is 0.
 #[inline]
 pub(super) fn shares<const N: usize>(weights: [f64; N]) -> [f64; N] {
     let sum: f64 = weights.iter().sum();
-    if sum > 0.0 { weights.map(|w| w / sum) } else { std::array::from_fn(|k| f64::from(k == 0)) }
+    if sum <= 0.0 {
+        return std::array::from_fn(|k| f64::from(k == 0));
+    }
+    let rest = 1.0 - LEAST * weights.iter().filter(|w| **w > 0.0).count() as f64;
+    weights.map(|w| if w > 0.0 { LEAST + rest * (w / sum) } else { 0.0 })
 }
 
 /// The lobe that `u` in [0, 1) chooses, each with its share, and `u` stretched
@@ -33,8 +41,11 @@ mod tests {
     use super::*;
 
     #[test]
-    fn shares_are_parts_of_the_sum() {
-        assert_eq!(shares([1.0, 0.0, 3.0]), [0.25, 0.0, 0.75]);
+    fn shares_are_parts_of_the_sum_and_never_tiny() {
+        let [a, b, c] = shares([1.0, 0.0, 3.0]);
+        assert!((a - (0.05 + 0.9 * 0.25)).abs() < 1e-15 && b == 0.0 && (a + c - 1.0).abs() < 1e-15);
+        assert_eq!(shares([1e-9, 1.0]).map(|s| (s * 1e6).round()), [50_000.0, 950_000.0]);
+        assert_eq!(shares([0.0, 2.0]), [0.0, 1.0]);
         assert_eq!(shares([0.0, 0.0]), [1.0, 0.0]);
     }
 

@@ -10,10 +10,24 @@ use crate::bsdf::Direction;
 pub struct Marker {
     /// Where.
     pub at: Point,
+    /// How far around it, in units of the square, the integrand may be as large:
+    /// patches within that are held to the marker too.
+    pub reach: f64,
     /// The first component there (the pdf).
     pub density: f64,
     /// The sum of the controlled components there (f·|cos θi|).
     pub value: f64,
+}
+
+impl Marker {
+    /// The corners of what it reaches, on its own side.
+    fn corners(&self) -> [Point; 4] {
+        let [u, v] = self.at;
+        let side = if u < 1.0 { 0.0 } else { 1.0 };
+        let u = [u - self.reach, u + self.reach].map(|u| u.clamp(side, side + 1.0 - 1e-12));
+        let v = [v - self.reach, v + self.reach].map(|v| v.clamp(0.0, 1.0));
+        [[u[0], v[0]], [u[0], v[1]], [u[1], v[0]], [u[1], v[1]]]
+    }
 }
 
 /// What is asked of a cubature.
@@ -185,7 +199,13 @@ fn first_patches(partition: &Partition, pilot: &[Point], markers: &[Marker]) -> 
         of_leaf[leaf as usize].pilot.push(*p);
     }
     for marker in markers {
-        of_leaf[partition.locate(marker.at)].markers.push(*marker);
+        let mut leaves = marker.corners().map(|at| partition.locate(at));
+        leaves.sort_unstable();
+        for (k, leaf) in leaves.into_iter().enumerate() {
+            if k == 0 || leaf != leaves[k - 1] {
+                of_leaf[leaf].markers.push(*marker);
+            }
+        }
     }
     let mut graded = Vec::with_capacity(of_leaf.len());
     let mut open = of_leaf;
@@ -224,7 +244,10 @@ fn halve(patch: Patch) -> [Patch; 2] {
     let axis = usize::from(patch.axis);
     let at = patch.cell.middle(axis);
     let (left_pilot, right_pilot) = patch.pilot.into_iter().partition(|p| p[axis] < at);
-    let (left_markers, right_markers) = patch.markers.into_iter().partition(|m| m.at[axis] < at);
+    let mut left_markers = patch.markers.clone();
+    left_markers.retain(|m| m.at[axis] - m.reach < at);
+    let mut right_markers = patch.markers;
+    right_markers.retain(|m| m.at[axis] + m.reach >= at);
     let [left, right] = patch.cell.split(axis, at);
     let half = |cell, pilot, markers| Patch {
         leaf: patch.leaf,
@@ -452,7 +475,7 @@ mod tests {
         let axis = Direction::from_angles(1.0, 2.0);
         let f = von_mises_fisher(1e8, axis);
         assert!(run(vec![], &[], &f).total(0).0 < 0.1);
-        let marker = Marker { at: Chart::new(0.0).to_point(axis), density: f(axis), value: 0.0 };
+        let marker = Marker { at: Chart::new(0.0).to_point(axis), reach: 0.0, density: f(axis), value: 0.0 };
         let (total, _) = run(vec![], &[marker], &f).total(0);
         // Patches beside the lobe may miss the outermost of its tail.
         assert!((total - 1.0).abs() < 1e-5, "{total}");
