@@ -16,7 +16,9 @@ use std::f64::consts::{PI, TAU};
 ///   albedo rd (1 − rs)(1 − (1 − cos θo/2)⁵) leaves what Fresnel's term takes.
 ///
 /// Half vectors are drawn with the density √((nu + 1)(nv + 1))/2π cosᵉθh, the
-/// diffuse part by the cosine, with shares of what both reflect at θo.
+/// diffuse part by the cosine, with shares of what both reflect at θo. The weight of
+/// the lobe is F cos θi/max(cos θo, cos θi) ≤ F, and smooth surfaces come closest to
+/// reflecting all: F + (1 − rs)(1 − (1 − cos θo/2)⁵) ≤ 1.
 #[derive(Clone, Copy, Debug)]
 pub struct AshikhminShirley {
     rd: f64,
@@ -134,5 +136,84 @@ impl Bsdf for AshikhminShirley {
         let weight = Bsdf::eval(self, wo, wi, transport) * (wi.z / pdf);
         let valid = pdf > 0.0 && pdf.is_finite() && weight[0].is_finite();
         valid.then_some(Sample { wi, weight, pdf, lobe })
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use crate::models::brute_force::{albedo, assert_sound, hemisphere};
+
+    const R: Transport = Transport::Radiance;
+
+    #[test]
+    fn density_of_half_vectors_is_normalised() {
+        for (nu, nv) in [(0.0, 0.0), (10.0, 10.0), (3.0, 200.0)] {
+            let mass = hemisphere(|h| AshikhminShirley::new(0.0, 1.0, nu, nv).density(h));
+            assert!((mass - 1.0).abs() < 1e-5, "{nu} {nv}: {mass}");
+        }
+    }
+
+    /// The area that u covers, by central differences, is the density's inverse.
+    #[test]
+    fn half_vectors_follow_their_density_in_each_quadrant() {
+        let h = 1e-6;
+        for (nu, nv) in [(0.0, 0.0), (3.0, 300.0), (1e5, 10.0)] {
+            let model = AshikhminShirley::new(0.0, 1.0, nu, nv);
+            for (u, v) in [(0.1, 0.1), (0.4, 0.3), (0.9, 0.6), (0.5, 0.95)] {
+                let at = |u: f64, v: f64| model.half(&[u, v]);
+                let area = (at(u + h, v) - at(u - h, v)).cross(at(u, v + h) - at(u, v - h)).length();
+                let jacobian = area / (4.0 * h * h) * model.density(at(u, v));
+                assert!((jacobian - 1.0).abs() < 1e-4, "{nu} {nv} {u} {v}: {jacobian}");
+                // The paper's azimuth lies in the quadrant of 2πu.
+                let turn = TAU * v;
+                assert!(at(u, v).x * turn.cos() > 0.0 && at(u, v).y * turn.sin() > 0.0);
+            }
+        }
+    }
+
+    /// 2π ∫(1 − (1 − μ/2)⁵) μ dμ = 23π/28, so that the base reflects rd (1 − rs)(1 −
+    /// (1 − cos θo/2)⁵).
+    #[test]
+    fn base_reflects_what_the_paper_says() {
+        for theta in [0.0f64, 0.8, 1.4] {
+            let wo = Direction::from_angles(theta, 0.2);
+            let with = |rd| albedo(&AshikhminShirley::new(rd, 0.3, 10.0, 10.0), wo, 0);
+            let expected = 0.6 * 0.7 * (1.0 - (1.0 - theta.cos() / 2.0).powi(5));
+            assert!((with(0.6) - with(0.0) - expected).abs() < 1e-5, "{theta}");
+        }
+    }
+
+    /// With rs = 1 and wo = n the weight is cos θi = 2c² − 1 at c = cos θh with density
+    /// (n + 1) cⁿ: the mean is 2 (n + 1)/(n + 3) (1 − 2^(−(n+3)/2)) − 1 + 2^(−(n+1)/2).
+    #[test]
+    fn albedo_at_normal_incidence_is_as_in_closed_form() {
+        for n in [0.0f64, 1.0, 20.0] {
+            let expected = 2.0 * (n + 1.0) / (n + 3.0) * (1.0 - 0.5f64.powf(0.5 * (n + 3.0))) - 1.0
+                + 0.5f64.powf(0.5 * (n + 1.0));
+            let a = albedo(&AshikhminShirley::new(0.0, 1.0, n, n), Direction::NORMAL, 0);
+            assert!((a - expected).abs() < 1e-4, "{n}: {a} {expected}");
+        }
+    }
+
+    #[test]
+    fn conserves_energy_and_is_reciprocal() {
+        for (rs, n) in [(0.0, 3.0), (0.04, 100.0), (0.5, 20.0)] {
+            let model = AshikhminShirley::new(1.0, rs, n, 2.0 * n);
+            for theta in [0.0, 0.7, 1.2, 1.5] {
+                let wo = Direction::from_angles(theta, 0.9);
+                assert!(albedo(&model, wo, 0) < 1.0);
+                let wi = Direction::from_angles(0.4, 2.0);
+                let (f, g) = (model.eval(wo, wi, R)[0], model.eval(wi, wo, R)[0]);
+                assert!((f / g - 1.0).abs() < 1e-13);
+            }
+        }
+    }
+
+    #[test]
+    fn edges_are_sound() {
+        for (rd, rs, nu, nv) in [(1.0, 0.0, 0.0, 0.0), (0.5, 0.04, 1e5, 3.0), (0.0, 1.0, 1e5, 1e5)] {
+            assert_sound(&AshikhminShirley::new(rd, rs, nu, nv));
+        }
     }
 }

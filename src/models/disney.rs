@@ -263,3 +263,126 @@ impl Bsdf for Disney {
         valid.then_some(Sample { wi, weight, pdf, lobe })
     }
 }
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use crate::models::brute_force::{albedo, assert_sound};
+
+    const R: Transport = Transport::Radiance;
+
+    const PLAIN: DisneyParameters = DisneyParameters {
+        base: [0.65, 0.4, 0.05],
+        subsurface: 0.0,
+        metallic: 0.0,
+        specular: 0.5,
+        specular_tint: 0.0,
+        roughness: 0.5,
+        anisotropic: 0.0,
+        sheen: 0.0,
+        sheen_tint: 0.5,
+        clearcoat: 0.0,
+        clearcoat_gloss: 1.0,
+    };
+
+    const ALL: DisneyParameters = DisneyParameters {
+        subsurface: 0.3,
+        metallic: 0.2,
+        specular_tint: 0.4,
+        anisotropic: 0.6,
+        sheen: 0.7,
+        clearcoat: 0.8,
+        clearcoat_gloss: 0.5,
+        ..PLAIN
+    };
+
+    /// The notes' formulas once more, written with angles.
+    #[test]
+    fn equals_the_published_form() {
+        let p = ALL;
+        let (wo, wi) = (Direction::from_angles(0.8, 0.3), Direction::from_angles(1.1, 2.4));
+        let h = (wo + wi).normalized();
+        let (cos_d, fo, fi) = (h.dot(wi), (1.0 - wo.z).powi(5), (1.0 - wi.z).powi(5));
+        let fd90 = 0.5 + 2.0 * p.roughness * cos_d * cos_d;
+        let fd = (1.0 + (fd90 - 1.0) * fo) * (1.0 + (fd90 - 1.0) * fi);
+        let fss90 = p.roughness * cos_d * cos_d;
+        let fss = (1.0 + (fss90 - 1.0) * fo) * (1.0 + (fss90 - 1.0) * fi);
+        let ss = 1.25 * (fss * (1.0 / (wo.z + wi.z) - 0.5) + 0.5);
+        let fh = (1.0 - cos_d).powi(5);
+        // GTR2 by the angles of h, GGX's G1 by the tangent.
+        let aspect = (1.0 - 0.9 * p.anisotropic).sqrt();
+        let (ax, ay) = (p.roughness.powi(2) / aspect, p.roughness.powi(2) * aspect);
+        let (t, phi) = (h.theta(), h.phi());
+        let e = (phi.cos() / ax).powi(2) + (phi.sin() / ay).powi(2);
+        let d = 1.0 / (PI * ax * ay * (t.sin().powi(2) * e + t.cos().powi(2)).powi(2));
+        let g1 = |w: Direction, a: f64| 2.0 / (1.0 + (1.0 + (a * w.theta().tan()).powi(2)).sqrt());
+        let both = |a: f64| g1(wo, a) * g1(wi, a) / (4.0 * wo.z * wi.z);
+        let a: f64 = 0.1 + (0.001 - 0.1) * p.clearcoat_gloss;
+        let coat_d = (a * a - 1.0) / (PI * (a * a).ln() * (1.0 + (a * a - 1.0) * t.cos().powi(2)));
+        let coat = 0.25 * p.clearcoat * coat_d * (0.04 + 0.96 * fh) * both(0.25);
+        let luminance = 0.3 * 0.65 + 0.6 * 0.4 + 0.1 * 0.05;
+        let f = Disney::new(p).eval(wo, wi, R);
+        for c in 0..3 {
+            let tint = p.base[c] / luminance;
+            let dielectric = 0.08 * p.specular * (1.0 + p.specular_tint * (tint - 1.0));
+            let f0 = dielectric + p.metallic * (p.base[c] - dielectric);
+            let sheen = p.sheen * (1.0 + p.sheen_tint * (tint - 1.0)) * fh;
+            let base = (fd + p.subsurface * (ss - fd)) * p.base[c] / PI + sheen;
+            let specular = d * both((0.5 + p.roughness / 2.0f64).powi(2)) * (f0 + (1.0 - f0) * fh);
+            let expected = (1.0 - p.metallic) * base + specular + coat;
+            assert!((f[c] / expected - 1.0).abs() < 1e-12, "{c}: {} {expected}", f[c]);
+        }
+    }
+
+    #[test]
+    fn is_reciprocal() {
+        let model = Disney::new(ALL);
+        for (a, b) in [(0.1, 1.5), (0.8, 1.1), (1.55, 1.5)] {
+            let (wo, wi) = (Direction::from_angles(a, 0.3), Direction::from_angles(b, 2.4));
+            let (f, g) = (model.eval(wo, wi, R), model.eval(wi, wo, R));
+            assert!(f.iter().zip(g.iter()).all(|(f, g)| (f / g - 1.0).abs() < 1e-12));
+        }
+    }
+
+    /// The albedo of the rough white base alone, in black specular, is above 1 at
+    /// grazing view: the retro-reflection is added.
+    #[test]
+    fn energy_is_claimed_where_it_is_conserved() {
+        let white = DisneyParameters { base: [1.0; 3], specular: 0.0, roughness: 1.0, ..PLAIN };
+        let cases = [
+            (white, false),
+            (PLAIN, true),
+            (DisneyParameters { base: [0.3; 3], subsurface: 1.0, ..PLAIN }, true),
+            (DisneyParameters { base: [0.9; 3], subsurface: 1.0, ..PLAIN }, false),
+            (DisneyParameters { base: [0.8; 3], clearcoat: 1.0, roughness: 1.0, ..PLAIN }, false),
+            (DisneyParameters { base: [0.9; 3], metallic: 1.0, ..PLAIN }, true),
+            (DisneyParameters { sheen: 1.0, sheen_tint: 1.0, base: [0.0, 0.0, 0.8], ..PLAIN }, false),
+        ];
+        for (p, conserves) in cases {
+            let model = Disney::new(p);
+            assert_eq!(model.describe().claims.energy_conserving, conserves, "{p:?}");
+            let degrees = [0.0f64, 40.0, 60.0, 72.0, 80.0, 86.0, 89.0];
+            let largest = degrees
+                .map(|d| Direction::from_angles(d.to_radians(), 0.0))
+                .into_iter()
+                .flat_map(|wo| [0, 2].map(|c| albedo(&model, wo, c)))
+                .fold(0.0, f64::max);
+            assert_eq!(largest <= 1.0, conserves, "{p:?}: {largest}");
+            let found = largest_albedo(&model, &[0.0]);
+            assert!((found / largest - 1.0).abs() < 0.05, "{p:?}: {found} {largest}");
+        }
+    }
+
+    #[test]
+    fn edges_are_sound() {
+        assert_sound(&Disney::new(ALL));
+        assert_sound(&Disney::new(DisneyParameters { roughness: 0.0, specular: 0.0, ..ALL }));
+        assert_sound(&Disney::new(DisneyParameters { base: [0.0; 3], specular: 0.0, ..PLAIN }));
+        assert_sound(&Disney::new(DisneyParameters {
+            metallic: 1.0,
+            roughness: 1.0,
+            anisotropic: 1.0,
+            ..ALL
+        }));
+    }
+}

@@ -180,3 +180,69 @@ impl Bsdf for Lafortune {
         axes.collect()
     }
 }
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use crate::models::Phong;
+    use crate::models::brute_force::{albedo, assert_sound};
+
+    const R: Transport = Transport::Radiance;
+    const DARK: GeneralisedCosine =
+        GeneralisedCosine { rho: 0.0, c: Direction::new(-1.0, -1.0, 1.0), exponent: 1.0 };
+
+    fn lobe(rho: f64, c: [f64; 3], exponent: f64) -> GeneralisedCosine {
+        GeneralisedCosine { rho, c: c.into(), exponent }
+    }
+
+    #[test]
+    fn with_a_mirror_lobe_it_is_phong() {
+        let model = Lafortune::new(0.3, [lobe(0.6, [-1.0, -1.0, 1.0], 12.0), DARK, DARK]);
+        let phong = Phong::new(0.3, 0.6, 12.0).unwrap();
+        for (theta, phi) in [(0.2, 0.4), (0.9, 3.3), (1.4, 2.0)] {
+            let (wo, wi) = (Direction::from_angles(0.9, 0.1), Direction::from_angles(theta, phi));
+            let error = model.eval(wo, wi, R)[0] / phong.eval(wo, wi, R)[0] - 1.0;
+            assert!(error.abs() < 1e-13, "{error}");
+            assert!((model.pdf(wo, wi, R) / phong.pdf(wo, wi, R) - 1.0).abs() < 1e-13);
+        }
+    }
+
+    /// A lobe of axis length l reflects lⁿ as much as one of unit length.
+    #[test]
+    fn albedo_at_normal_incidence_is_as_in_closed_form() {
+        let lobes = [lobe(0.2, [-1.0, -1.0, 0.9], 10.0), lobe(0.1, [0.5, 0.5, 1.1], 3.0), DARK];
+        let expected = 0.3 + 0.2 * 0.9f64.powi(10) + 0.1 * 1.1f64.powi(3);
+        let a = albedo(&Lafortune::new(0.3, lobes), Direction::NORMAL, 0);
+        assert!((a - expected).abs() < 2e-5, "{a} {expected}");
+    }
+
+    /// The off-specular lobe peaks nearer to grazing than the mirror, the
+    /// retro-reflective one at wo.
+    #[test]
+    fn lobes_point_where_they_should() {
+        let wo = Direction::from_angles(1.0, 0.4);
+        assert!(lobe(1.0, [-1.0, -1.0, 0.6], 20.0).axis(wo).theta() > 1.1);
+        assert!(lobe(1.0, [0.9, 0.9, 0.9], 8.0).axis(wo).angle(wo) < 1e-12);
+    }
+
+    #[test]
+    fn energy_is_claimed_within_the_bound_only() {
+        let off = lobe(0.6, [-1.0, -1.0, 0.5], 20.0);
+        let safe = Lafortune::new(0.4, [off, DARK, DARK]);
+        assert!(safe.describe().claims.energy_conserving);
+        for theta in [0.0, 0.5, 1.0, 1.3, 1.5] {
+            assert!(albedo(&safe, Direction::from_angles(theta, 0.2), 0) <= safe.albedo_bound() + 1e-5);
+        }
+        // A c above 1 makes up for ρ: at 1.1²⁰ it is 6.7 times as bright.
+        let bright = Lafortune::new(0.4, [lobe(0.3, [-1.0, -1.0, 1.1], 20.0), DARK, DARK]);
+        assert!(!bright.describe().claims.energy_conserving);
+        assert!(albedo(&bright, Direction::NORMAL, 0) > 2.0);
+    }
+
+    #[test]
+    fn edges_are_sound() {
+        let lobes = [lobe(0.4, [-1.0, -1.0, 0.8], 20.0), lobe(0.1, [0.0, 0.0, -1.0], 4.0), DARK];
+        assert_sound(&Lafortune::new(0.3, lobes));
+        assert_sound(&Lafortune::new(0.0, [lobe(0.1, [0.0; 3], 1000.0), DARK, DARK]));
+    }
+}

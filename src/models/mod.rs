@@ -4,6 +4,8 @@ use crate::registry::Model;
 
 mod ashikhmin_shirley;
 mod blend;
+#[cfg(test)]
+mod brute_force;
 mod conductor;
 mod cosine_lobe;
 mod dielectric;

@@ -95,3 +95,44 @@ impl Bsdf for Phong {
         vec![wo.mirrored()]
     }
 }
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use crate::models::brute_force::{albedo, assert_sound};
+
+    /// At normal incidence (n + 2)/2π ∫cosⁿ⁺¹ = 1. For n = 0 the lobe is Lambert's on
+    /// the lune that the mirror direction sees; for n = 1, ∫ of both cosines over
+    /// that lune is 2/3 (sin θo + (π − θo) cos θo).
+    #[test]
+    fn albedo_is_as_in_closed_form() {
+        for n in [0.0, 1.0, 7.5, 60.0] {
+            let a = albedo(&Phong::new(0.25, 0.5, n).unwrap(), Direction::NORMAL, 0);
+            assert!((a - 0.75).abs() < 2e-5, "{n}: {a}");
+        }
+        for theta in [0.4f64, 1.0, 1.5] {
+            let wo = Direction::from_angles(theta, 0.3);
+            let lune = 0.5 * (1.0 + theta.cos());
+            let both = (theta.sin() + (PI - theta) * theta.cos()) / PI;
+            let [a, b] = [0.0, 1.0].map(|n| albedo(&Phong::new(0.0, 1.0, n).unwrap(), wo, 0));
+            assert!((a - lune).abs() < 1e-3 && (b - both).abs() < 2e-5, "{theta}: {a} {lune} {b} {both}");
+        }
+    }
+
+    #[test]
+    fn without_a_lobe_it_is_lambert() {
+        let model = Phong::new(1.0, 0.0, 30.0).unwrap();
+        assert!(model.describe().claims.lossless);
+        let (wo, wi) = (Direction::from_angles(0.3, 1.0), Direction::from_angles(1.2, 0.0));
+        assert_eq!(model.eval(wo, wi, Transport::Radiance)[0], 1.0 / PI);
+        assert!(Phong::new(0.7, 0.4, 1.0).unwrap_err().contains("kd + ks = 1.1"));
+        assert!(Phong::new(0.9, 0.1, 1.0).is_ok());
+    }
+
+    #[test]
+    fn edges_are_sound() {
+        for (kd, ks, n) in [(0.5, 0.5, 0.0), (0.0, 1.0, 20.0), (0.4, 0.1, 1e5), (0.0, 0.0, 1.0)] {
+            assert_sound(&Phong::new(kd, ks, n).unwrap());
+        }
+    }
+}

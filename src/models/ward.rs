@@ -102,3 +102,66 @@ impl Bsdf for Ward {
         valid.then_some(Sample { wi, weight, pdf, lobe })
     }
 }
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use crate::models::brute_force::{albedo, assert_sound};
+    use std::f64::consts::FRAC_PI_2;
+
+    const R: Transport = Transport::Radiance;
+
+    /// Eq. 5 of the paper, in h = wo + wi, not normalised.
+    #[test]
+    fn equals_the_published_form() {
+        let (x, y): (f64, f64) = (0.2, 0.5);
+        let model = Ward::new(0.2, 0.7, Roughness { x, y }).unwrap();
+        let (wo, wi) = (Direction::from_angles(0.9, 0.3), Direction::from_angles(0.7, 2.9));
+        let h = wo + wi;
+        let exponent = -((h.x / x).powi(2) + (h.y / y).powi(2)) / (h.z * h.z);
+        let f = 0.2 / PI + 0.7 / (PI * x * y) * h.dot(h) / h.z.powi(4) * exponent.exp();
+        assert!((model.eval(wo, wi, R)[0] / f - 1.0).abs() < 1e-13);
+        assert!((model.eval(wi, wo, R)[0] / f - 1.0).abs() < 1e-13);
+    }
+
+    /// With tan²θm = α² x, x exponentially distributed, the weight at normal incidence
+    /// is 1 − α² x where that is positive; its mean is 1 − α² (1 − e^(−1/α²)).
+    #[test]
+    fn albedo_at_normal_incidence_is_as_in_closed_form() {
+        for alpha in [0.1f64, 0.4, 1.0] {
+            let model = Ward::new(0.0, 1.0, Roughness::isotropic(alpha)).unwrap();
+            let a2 = alpha * alpha;
+            let expected = 1.0 - a2 * (1.0 - (-1.0 / a2).exp());
+            let a = albedo(&model, Direction::NORMAL, 0);
+            assert!((a - expected).abs() < 2e-5, "{alpha}: {a} {expected}");
+        }
+    }
+
+    #[test]
+    fn albedo_is_bounded_at_all_angles() {
+        for (x, y) in [(1.0, 1.0), (0.2, 0.2), (0.2, 1.0)] {
+            let model = Ward::new(0.0, 1.0, Roughness { x, y }).unwrap();
+            for theta in [0.6, 1.2, 1.5, FRAC_PI_2 - 1e-3] {
+                let a = albedo(&model, Direction::from_angles(theta, 0.5), 0);
+                assert!(a < 1.0, "{x} {y} {theta}: {a}");
+            }
+        }
+    }
+
+    /// The weight of a draw of the lobe is 2 cos θi/(cos θo + cos θi).
+    #[test]
+    fn weights_are_the_published_ones() {
+        let model = Ward::new(0.0, 1.0, Roughness { x: 0.3, y: 0.1 }).unwrap();
+        let wo = Direction::from_angles(1.1, 0.2);
+        let s = model.sample(wo, &[0.3, 0.6], R).unwrap();
+        assert!((s.weight[0] - 2.0 * s.wi.z / (wo.z + s.wi.z)).abs() < 1e-12);
+    }
+
+    #[test]
+    fn edges_are_sound() {
+        for (kd, ks, x, y) in [(0.0, 1.0, 1e-4, 1e-4), (0.5, 0.5, 0.05, 1.0), (0.3, 0.0, 0.2, 0.2)] {
+            assert_sound(&Ward::new(kd, ks, Roughness { x, y }).unwrap());
+        }
+        assert!(Ward::new(0.5, 0.6, Roughness::isotropic(0.1)).unwrap_err().contains("1.1"));
+    }
+}
