@@ -129,6 +129,16 @@ mod tests {
         assert!(Phong::new(0.9, 0.1, 1.0).is_ok());
     }
 
+    /// What does nothing goes back to its default, and `sensitivity` leaves it alone.
+    #[test]
+    fn exponent_matters_with_a_lobe_only() {
+        let spelled = |text: &str| {
+            crate::registry::Registry::builtin().resolve(&text.parse().unwrap()).unwrap().spelling
+        };
+        assert_eq!(spelled("phong:ks=0,exponent=50"), "phong:ks=0");
+        assert_eq!(spelled("phong:ks=0.1,exponent=50"), "phong:ks=0.1,exponent=50");
+    }
+
     #[test]
     fn edges_are_sound() {
         for (kd, ks, n) in [(0.5, 0.5, 0.0), (0.0, 1.0, 20.0), (0.4, 0.1, 1e5), (0.0, 0.0, 1.0)] {

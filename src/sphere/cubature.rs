@@ -481,6 +481,45 @@ mod tests {
         assert!((total - 1.0).abs() < 1e-5, "{total}");
     }
 
+    /// The rim of a narrow lobe over a wide one lies in leaves that the wide one's
+    /// points fill; a marker at each point brings it back.
+    #[test]
+    fn keeps_the_rim_of_a_narrow_lobe_over_a_wide_one() {
+        let axis = Direction::from_angles(0.5, 0.3);
+        let chart = Chart::new(0.0);
+        let kappa = 3e4;
+        let narrow = von_mises_fisher(kappa, axis);
+        let f = |wi: Direction| 0.45 * wi.z.max(0.0) / PI + 0.55 * narrow(wi);
+        let t = axis.cross(Direction::NORMAL).normalized();
+        let s = axis.cross(t);
+        let n = 1 << 15;
+        let wi: Vec<_> = (0..n)
+            .map(|k| {
+                let u = (f64::from(k) * 0.754_877_666).fract();
+                let (sin, cos) = (2.399_963 * f64::from(k)).sin_cos();
+                if (f64::from(k) * 0.569_840_291).fract() < 0.45 {
+                    return Direction::new(u.sqrt() * cos, u.sqrt() * sin, (1.0 - u).sqrt());
+                }
+                let r = (-2.0 * (1.0 - u).ln() / kappa).sqrt();
+                (axis + t * (r * cos) + s * (r * sin)).normalized()
+            })
+            .collect();
+        let pilot: Vec<_> = wi.iter().map(|wi| chart.to_point(*wi)).collect();
+        let markers: Vec<_> = wi
+            .iter()
+            .zip(&pilot)
+            .map(|(wi, at)| {
+                let density = f(*wi);
+                let reach = 0.5 / (density * STERADIANS * f64::from(n)).sqrt();
+                Marker { at: *at, reach, density, value: 0.0 }
+            })
+            .collect();
+        let without = run(pilot.clone(), &[], f).total(0).0;
+        let with = run(pilot, &markers, f).total(0).0;
+        assert!((without - 1.0).abs() > 2e-4, "{without}");
+        assert!((with - 1.0).abs() < 2e-5, "{with}");
+    }
+
     #[test]
     fn says_when_it_gives_up() {
         let partition = Partition::build(Chart::new(0.0), vec![], 1024);
