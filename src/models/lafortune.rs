@@ -89,7 +89,8 @@ pub(super) fn model() -> Model {
     )
     .number("kd", 0.3, 0.0..=1.0, "share of the light that is reflected diffusely");
     // An off-specular lobe, a retro-reflective one, and a forward one at grazing.
-    let lobes: [(_, fn(&Parameters) -> bool, _); LOBES] = [
+    type Lit = fn(&Parameters) -> bool;
+    let lobes: [(_, Lit, _); LOBES] = [
         ("rho1 > 0", |p| p.number("rho1") > 0.0, [0.4, -1.0, -1.0, 0.8, 20.0]),
         ("rho2 > 0", |p| p.number("rho2") > 0.0, [0.15, 0.9, 0.9, 0.9, 8.0]),
         ("rho3 > 0", |p| p.number("rho3") > 0.0, [0.1, -1.0, -1.0, 0.3, 60.0]),

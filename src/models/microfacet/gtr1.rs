@@ -3,9 +3,9 @@
 use crate::bsdf::Direction;
 use std::f64::consts::{PI, TAU};
 
-/// Generalised Trowbridge–Reitz with exponent 1, D = (α² − 1)/(π ln α² (1 + (α² −
-/// 1) cos²θ)); GGX has exponent 2 (B. Burley, *Physically-based shading at
-/// Disney*, SIGGRAPH 2012 course notes, eq. 4).
+/// Generalised Trowbridge–Reitz with exponent γ = 1; GGX has γ = 2 (B. Burley,
+/// *Physically-based shading at Disney*, SIGGRAPH 2012 course notes, appendix B):
+/// D = (α² − 1)/(π ln α² (1 + (α² − 1) cos²θ)).
 #[derive(Clone, Copy, Debug)]
 pub struct Gtr1 {
     alpha2: f64,
@@ -31,7 +31,7 @@ impl Gtr1 {
         self.scale / (m.x * m.x + m.y * m.y + self.alpha2 * m.z * m.z)
     }
 
-    /// A normal with density D cos θ (eq. 5).
+    /// A normal with density D cos θ.
     #[inline]
     pub fn sample(&self, u: &[f64]) -> Direction {
         // cos²θ = (1 − (α²)^(1−u))/(1 − α²), and the sine of it without cancellation.
