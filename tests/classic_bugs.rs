@@ -295,3 +295,15 @@ fn what_a_model_does_not_claim_does_not_hold() {
         assert_eq!(failed(&measure(vec![claimed])), BTreeSet::from([check]), "{text}");
     }
 }
+
+/// A lobe that one draw in fifty takes is a jump of u → wi, and no error of pdf.
+#[test]
+fn a_rare_lobe_is_no_bug() {
+    let cases = [(0.96, 1000, 30.0, 17.0), (0.98, 0, 60.0, 17.0), (0.98, 1000, 60.0, 17.0)];
+    let cases = cases.map(|(weight, nu, theta, phi)| {
+        let rare = format!("(ashikhmin-shirley:rd=0,nu={nu},nv=3)");
+        let subject = builtin(&format!("blend:first={rare},second=lambert,weight={weight}"));
+        Case { phi_deg: phi, ..case(subject, theta) }
+    });
+    assert_eq!(failed(&measure(cases.into())), BTreeSet::new());
+}

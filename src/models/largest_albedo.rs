@@ -2,7 +2,7 @@
 
 use crate::bsdf::{Bsdf, Direction, Transport};
 
-/// Draws a direction.
+/// Draws for each wo.
 const DRAWS: u32 = 256;
 
 /// Directions of wo: the cosines, where many models reflect most (towards
