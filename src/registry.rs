@@ -91,6 +91,24 @@ pub struct Parameter {
     pub role: Option<Role>,
     /// It only matters while this other parameter has one of these values.
     pub only_when: Option<(String, Vec<String>)>,
+    /// It only matters while this holds of the other parameters.
+    pub only_if: Option<Condition>,
+}
+
+/// A condition on the parameters of a subject.
+#[derive(Clone, Copy, Debug)]
+pub struct Condition {
+    /// As a reader is told: `ks > 0`.
+    pub words: &'static str,
+    /// Whether it holds.
+    pub holds: fn(&Parameters) -> bool,
+}
+
+impl PartialEq for Condition {
+    /// What reads the same is the same.
+    fn eq(&self, other: &Self) -> bool {
+        self.words == other.words
+    }
 }
 
 impl Parameter {
@@ -105,7 +123,9 @@ impl Parameter {
 
     /// Whether it matters for a subject with these parameters.
     pub fn applies(&self, parameters: &Parameters) -> bool {
-        self.only_when.as_ref().is_none_or(|(name, values)| values.iter().any(|v| v == parameters.text(name)))
+        let chosen =
+            |(name, values): &(String, Vec<String>)| values.iter().any(|v| v == parameters.text(name));
+        self.only_when.as_ref().is_none_or(chosen) && self.only_if.is_none_or(|c| (c.holds)(parameters))
     }
 
     /// A value in the form that it has for this parameter: words may look like
@@ -236,6 +256,7 @@ impl Model {
             doc: doc.into(),
             role: None,
             only_when: None,
+            only_if: None,
         });
         self
     }
@@ -272,6 +293,13 @@ impl Model {
     pub fn only_when(mut self, parameter: &str, values: &[&str]) -> Self {
         self.parameters.last_mut().expect("a parameter was declared").only_when =
             Some((parameter.into(), values.iter().map(|v| (*v).to_string()).collect()));
+        self
+    }
+
+    /// The parameter declared last only matters while `holds`, in `words`.
+    pub fn only_if(mut self, words: &'static str, holds: fn(&Parameters) -> bool) -> Self {
+        self.parameters.last_mut().expect("a parameter was declared").only_if =
+            Some(Condition { words, holds });
         self
     }
 

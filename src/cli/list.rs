@@ -50,10 +50,10 @@ fn kind(parameter: &Parameter) -> (&'static str, String) {
 }
 
 fn when(parameter: &Parameter) -> String {
-    match &parameter.only_when {
-        Some((name, values)) => format!(" (when {name} = {})", values.join(" or ")),
-        None => String::new(),
-    }
+    let chosen = parameter.only_when.iter().map(|(name, values)| format!("{name} = {}", values.join(" or ")));
+    let held = parameter.only_if.iter().map(|condition| condition.words.to_string());
+    let all: Vec<_> = chosen.chain(held).collect();
+    if all.is_empty() { String::new() } else { format!(" (when {})", all.join(" and ")) }
 }
 
 /// Columns as wide as their widest cell; the last one is not padded.
@@ -82,12 +82,15 @@ mod tests {
         let model = Model::new("m", "a model", |_| Err::<crate::models::Lambert, _>("never built".into()))
             .choice("f", &["none", "schlick"], "Fresnel")
             .number("f0", 0.04, 0.0..=1.0, "reflectance")
-            .only_when("f", &["schlick"]);
+            .only_when("f", &["schlick"])
+            .number("tint", 0.0, 0.0..=1.0, "colour")
+            .only_if("f0 > 0", |p| p.number("f0") > 0.0);
         let text = parameters(&model);
         let expected = "m: a model\n\n\
             parameter  type    default  values         what it is\n\
             f          choice  none     none, schlick  Fresnel\n\
-            f0         number  0.04     0 to 1         reflectance (when f = schlick)\n";
+            f0         number  0.04     0 to 1         reflectance (when f = schlick)\n\
+            tint       number  0        0 to 1         colour (when f0 > 0)\n";
         assert_eq!(text, expected);
         assert!(subjects(&Registry::empty().register(model)).ends_with("m     a model\n"));
     }

@@ -100,7 +100,7 @@ impl Integrals {
         evaluations: u64,
     ) -> Result<Self, Halt> {
         let channels = meter.channels();
-        let markers = markers(meter, setup, partition)?;
+        let markers = markers(meter, setup, partition, pilot)?;
         let goal = Goal {
             // pdf; f·cos and its square over pdf per channel; lost; two ratios.
             components: 1 + 2 * channels + 3,
@@ -215,9 +215,18 @@ pub fn refracted(wo: Direction, eta: f64) -> Option<Direction> {
     (z2 > 0.0).then(|| Direction::new(x, y, -z2.sqrt().copysign(wo.z)))
 }
 
-fn markers(meter: &Meter, setup: &Setup, partition: &Partition) -> Result<Vec<Marker>, Halt> {
+/// What is known of the integrand before it is integrated: at expected
+/// directions, on a base grid, and where the sampler goes (the rim of a narrow
+/// lobe over a wide one is too faint for the pilot's counts, not for the pdf).
+fn markers(
+    meter: &Meter,
+    setup: &Setup,
+    partition: &Partition,
+    pilot: &[Point],
+) -> Result<Vec<Marker>, Halt> {
     let chart = partition.chart();
     let mut directions = expected_directions(meter, setup)?;
+    directions.extend(pilot.iter().map(|p| chart.to_direction(*p)));
     let step = 1.0 / BASE_GRID as f64;
     for column in 0..2 * BASE_GRID {
         for row in 0..BASE_GRID {
@@ -234,6 +243,8 @@ fn markers(meter: &Meter, setup: &Setup, partition: &Partition) -> Result<Vec<Ma
         .enumerate()
         .map(|(k, wi)| Marker {
             at: chart.to_point(*wi),
+            // The distance at which the sampler's next point is to be expected.
+            reach: 0.5 / (density[k] * STERADIANS * pilot.len().max(1) as f64).sqrt().max(1e3),
             density: density[k],
             value: value[k * channels..][..channels].iter().sum::<f64>() * wi.abs_cos_theta(),
         })

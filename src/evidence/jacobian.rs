@@ -163,9 +163,10 @@ fn slopes(meter: &Meter, setup: &Setup) -> Result<Vec<Point>, Halt> {
     Ok(points)
 }
 
-/// Whether wi jumps anywhere on lines through the unit square: a step that
-/// does not shrink when it is halved again and again. Looked for in even steps,
-/// and in ones that halve towards both ends, where a rare lobe may have its share.
+/// Whether wi jumps anywhere on lines through the unit square: to another kind
+/// of lobe, or by a step that does not shrink when it is halved again and again.
+/// Looked for in even steps, and in ones that halve towards both ends, where a rare
+/// lobe may have its share.
 fn has_jump(meter: &Meter, setup: &Setup, active: [usize; 2]) -> Result<bool, Halt> {
     let mut stream = setup.key.with("stage", "jumps").block(0);
     let even: Vec<f64> = (0..LINE_POINTS).map(|k| (k as f64 + 0.5) / LINE_POINTS as f64).collect();
@@ -184,7 +185,7 @@ fn has_jump(meter: &Meter, setup: &Setup, active: [usize; 2]) -> Result<bool, Ha
     Ok(false)
 }
 
-/// Whether the widest step of wi between `places` on the line along `axis` is a jump.
+/// Whether wi jumps between `places` on the line along `axis`, where its step is widest.
 fn jumps_between(
     meter: &Meter,
     setup: &Setup,
@@ -200,6 +201,10 @@ fn jumps_between(
     };
     let u: Vec<f64> = places.iter().flat_map(|s| row(*s)).collect();
     meter.sample(setup.wo, &u, setup.transport, &mut samples)?;
+    let mut lobes = samples.lobe.iter().filter(|l| l.is_valid());
+    if lobes.next().is_some_and(|first| lobes.any(|l| l != first)) {
+        return Ok(true);
+    }
     let widest = (1..places.len())
         .filter(|k| samples.lobe[*k].is_valid() && samples.lobe[k - 1].is_valid())
         .map(|k| ((samples.wi[k] - samples.wi[k - 1]).length(), k))

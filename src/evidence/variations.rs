@@ -164,9 +164,11 @@ impl Response {
     }
 }
 
-/// A direction on the side of wo, at its azimuth, this many degrees from the normal.
+/// A direction on the side of wo, this many degrees from the normal, a radian
+/// from its azimuth: at the normal that is a tangent, where half of an anisotropic
+/// model's parameters do nothing.
 fn oblique(setup: &Setup, theta_deg: f64) -> Direction {
-    let d = Direction::from_angles(theta_deg.to_radians(), setup.wo.phi());
+    let d = Direction::from_angles(theta_deg.to_radians(), setup.wo.phi() + 1.0);
     if setup.wo.z > 0.0 { d } else { d.flipped() }
 }
 

@@ -4,13 +4,38 @@ use crate::bsdf::{Bsdf, Description, Direction, Lobe, Sample, Spectrum, Transpor
 use crate::registry::Model;
 use std::f64::consts::PI;
 
-/// How [`Lambert`] draws directions.
+/// A density of directions over the upper hemisphere, whatever the material.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub enum HemisphereSampling {
     /// p = cos θi / π.
     Cosine,
     /// p = 1 / 2π.
     Uniform,
+}
+
+impl HemisphereSampling {
+    /// The density named `name`; cosine where it is not `uniform`.
+    pub(super) fn named(name: &str) -> Self {
+        if name == "uniform" { Self::Uniform } else { Self::Cosine }
+    }
+
+    /// Density of a direction above the horizon per steradian.
+    #[inline]
+    pub(super) fn density(self, wi: Direction) -> f64 {
+        match self {
+            Self::Cosine => wi.z / PI,
+            Self::Uniform => 0.5 / PI,
+        }
+    }
+
+    /// A direction above the horizon with this density.
+    #[inline]
+    pub(super) fn draw(self, u: &[f64]) -> Direction {
+        match self {
+            Self::Cosine => sample_cosine(u),
+            Self::Uniform => sample_uniform(u),
+        }
+    }
 }
 
 /// Ideally diffuse reflection, f = ρ/π on the front side (J. H. Lambert,
@@ -28,10 +53,7 @@ pub(super) fn model() -> Model {
     Model::new("lambert", "ideally diffuse reflection, f = ρ/π (Lambert 1760)", |p| {
         Ok(Lambert {
             reflectance: p.number("reflectance"),
-            sampling: match p.text("sampling") {
-                "uniform" => HemisphereSampling::Uniform,
-                _ => HemisphereSampling::Cosine,
-            },
+            sampling: HemisphereSampling::named(p.text("sampling")),
         })
     })
     .number("reflectance", 0.8, 0.0..=1.0, "share of the light that is reflected")
@@ -72,20 +94,14 @@ impl Bsdf for Lambert {
         if wo.z <= 0.0 || wi.z <= 0.0 {
             return 0.0;
         }
-        match self.sampling {
-            HemisphereSampling::Cosine => wi.z / PI,
-            HemisphereSampling::Uniform => 0.5 / PI,
-        }
+        self.sampling.density(wi)
     }
 
     fn sample(&self, wo: Direction, u: &[f64], transport: Transport) -> Option<Sample> {
         if wo.z <= 0.0 {
             return None;
         }
-        let wi = match self.sampling {
-            HemisphereSampling::Cosine => sample_cosine(u),
-            HemisphereSampling::Uniform => sample_uniform(u),
-        };
+        let wi = self.sampling.draw(u);
         let pdf = Bsdf::pdf(self, wo, wi, transport);
         let weight = Bsdf::eval(self, wo, wi, transport) * (wi.z / pdf);
         (pdf > 0.0).then_some(Sample { wi, weight, pdf, lobe: Lobe::DIFFUSE_REFLECTION })

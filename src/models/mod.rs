@@ -2,24 +2,41 @@
 
 use crate::registry::Model;
 
+mod ashikhmin_shirley;
 mod blend;
+#[cfg(test)]
+mod brute_force;
 mod clipped_cosine;
 mod conductor;
+mod cosine_lobe;
 mod dielectric;
+mod disney;
 pub mod fresnel;
+mod lafortune;
 mod lambert;
+mod largest_albedo;
 mod metal;
 pub mod microfacet;
+mod mixture;
 mod oren_nayar;
 mod oren_nayar_eon;
+mod phong;
+mod sheen;
+mod ward;
 
+pub use ashikhmin_shirley::AshikhminShirley;
 pub use blend::Blend;
 pub use conductor::{Conductor, ConductorFresnel};
 pub use dielectric::Dielectric;
+pub use disney::{Disney, DisneyParameters};
+pub use lafortune::{GeneralisedCosine, Lafortune};
 pub use lambert::{HemisphereSampling, Lambert};
 pub use metal::Metal;
 pub use oren_nayar::OrenNayar;
 pub use oren_nayar_eon::{EonSampling, OrenNayarEon};
+pub use phong::Phong;
+pub use sheen::Sheen;
+pub use ward::Ward;
 
 /// Every built-in model, in the order in which `gonio list` shows them.
 pub fn all() -> Vec<Model> {
@@ -31,6 +48,12 @@ pub fn all() -> Vec<Model> {
         conductor::model(),
         microfacet::torrance_sparrow::model(),
         microfacet::ggx_multiscatter::model(),
+        phong::model(),
+        ward::model(),
+        ashikhmin_shirley::model(),
+        lafortune::model(),
+        disney::model(),
+        sheen::model(),
         blend::model(),
     ]
 }

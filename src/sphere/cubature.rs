@@ -10,10 +10,24 @@ use crate::bsdf::Direction;
 pub struct Marker {
     /// Where.
     pub at: Point,
+    /// How far around it, in units of the square, the integrand may be as large:
+    /// patches within that are held to the marker too.
+    pub reach: f64,
     /// The first component there (the pdf).
     pub density: f64,
     /// The sum of the controlled components there (f·|cos θi|).
     pub value: f64,
+}
+
+impl Marker {
+    /// The corners of what it reaches, on its own side.
+    fn corners(&self) -> [Point; 4] {
+        let [u, v] = self.at;
+        let side = if u < 1.0 { 0.0 } else { 1.0 };
+        let u = [u - self.reach, u + self.reach].map(|u| u.clamp(side, side + 1.0 - 1e-12));
+        let v = [v - self.reach, v + self.reach].map(|v| v.clamp(0.0, 1.0));
+        [[u[0], v[0]], [u[0], v[1]], [u[1], v[0]], [u[1], v[1]]]
+    }
 }
 
 /// What is asked of a cubature.
@@ -189,7 +203,13 @@ fn first_patches(partition: &Partition, pilot: &[Point], markers: &[Marker]) -> 
         of_leaf[leaf as usize].pilot.push(*p);
     }
     for marker in markers {
-        of_leaf[partition.locate(marker.at)].markers.push(*marker);
+        let mut leaves = marker.corners().map(|at| partition.locate(at));
+        leaves.sort_unstable();
+        for (k, leaf) in leaves.into_iter().enumerate() {
+            if k == 0 || leaf != leaves[k - 1] {
+                of_leaf[leaf].markers.push(*marker);
+            }
+        }
     }
     let mut graded = Vec::with_capacity(of_leaf.len());
     let mut open = of_leaf;
@@ -232,7 +252,10 @@ fn halve(patch: Patch) -> [Patch; 2] {
     let axis = usize::from(patch.axis);
     let at = patch.cell.middle(axis);
     let (left_pilot, right_pilot) = patch.pilot.into_iter().partition(|p| p[axis] < at);
-    let (left_markers, right_markers) = patch.markers.into_iter().partition(|m| m.at[axis] < at);
+    let mut left_markers = patch.markers.clone();
+    left_markers.retain(|m| m.at[axis] - m.reach < at);
+    let mut right_markers = patch.markers;
+    right_markers.retain(|m| m.at[axis] + m.reach >= at);
     let [left, right] = patch.cell.split(axis, at);
     let half = |cell, pilot, markers| Patch {
         leaf: patch.leaf,
@@ -460,7 +483,7 @@ mod tests {
         let axis = Direction::from_angles(1.0, 2.0);
         let f = von_mises_fisher(1e8, axis);
         assert!(run(vec![], &[], &f).total(0).0 < 0.1);
-        let marker = Marker { at: Chart::new(0.0).to_point(axis), density: f(axis), value: 0.0 };
+        let marker = Marker { at: Chart::new(0.0).to_point(axis), reach: 0.0, density: f(axis), value: 0.0 };
         let (total, _) = run(vec![], &[marker], &f).total(0);
         // Patches beside the lobe may miss the outermost of its tail.
         assert!((total - 1.0).abs() < 1e-5, "{total}");
@@ -483,6 +506,45 @@ mod tests {
         };
         let (total, _) = integrate(&partition, &pilot, &[], &goal(1), lobe).unwrap().total(0);
         assert!((total - 1.0).abs() < 1e-4, "{total}");
+    }
+
+    /// The rim of a narrow lobe over a wide one lies in leaves that the wide one's
+    /// points fill; a marker at each point brings it back.
+    #[test]
+    fn keeps_the_rim_of_a_narrow_lobe_over_a_wide_one() {
+        let axis = Direction::from_angles(0.5, 0.3);
+        let chart = Chart::new(0.0);
+        let kappa = 3e4;
+        let narrow = von_mises_fisher(kappa, axis);
+        let f = |wi: Direction| 0.45 * wi.z.max(0.0) / PI + 0.55 * narrow(wi);
+        let t = axis.cross(Direction::NORMAL).normalized();
+        let s = axis.cross(t);
+        let n = 1 << 15;
+        let wi: Vec<_> = (0..n)
+            .map(|k| {
+                let u = (f64::from(k) * 0.754_877_666).fract();
+                let (sin, cos) = (2.399_963 * f64::from(k)).sin_cos();
+                if (f64::from(k) * 0.569_840_291).fract() < 0.45 {
+                    return Direction::new(u.sqrt() * cos, u.sqrt() * sin, (1.0 - u).sqrt());
+                }
+                let r = (-2.0 * (1.0 - u).ln() / kappa).sqrt();
+                (axis + t * (r * cos) + s * (r * sin)).normalized()
+            })
+            .collect();
+        let pilot: Vec<_> = wi.iter().map(|wi| chart.to_point(*wi)).collect();
+        let markers: Vec<_> = wi
+            .iter()
+            .zip(&pilot)
+            .map(|(wi, at)| {
+                let density = f(*wi);
+                let reach = 0.5 / (density * STERADIANS * f64::from(n)).sqrt();
+                Marker { at: *at, reach, density, value: 0.0 }
+            })
+            .collect();
+        let without = run(pilot.clone(), &[], f).total(0).0;
+        let with = run(pilot, &markers, f).total(0).0;
+        assert!((without - 1.0).abs() > 2e-4, "{without}");
+        assert!((with - 1.0).abs() < 2e-5, "{with}");
     }
 
     #[test]

@@ -176,7 +176,7 @@ impl TorranceSparrow {
 /// side, and where both are so close to the horizon and opposite that their
 /// sum has no length in f64.
 #[inline]
-fn half_vector(wo: Direction, wi: Direction) -> Option<(Direction, f64)> {
+pub(in crate::models) fn half_vector(wo: Direction, wi: Direction) -> Option<(Direction, f64)> {
     if wo.z <= 0.0 || wi.z <= 0.0 {
         return None;
     }
