@@ -26,6 +26,7 @@ pub fn all() -> Vec<Model> {
         dielectric::model(),
         conductor::model(),
         microfacet::torrance_sparrow::model(),
+        microfacet::rough_dielectric::model(),
         blend::model(),
     ]
 }

@@ -7,7 +7,10 @@ mod chebyshev;
 mod distribution;
 mod gaussian;
 mod ggx;
+mod half_vector;
+pub(super) mod rough_dielectric;
 mod roughness;
+mod smith;
 pub(super) mod torrance_sparrow;
 mod v_cavity;
 
@@ -15,5 +18,6 @@ pub use beckmann::Beckmann;
 pub use distribution::Distribution;
 pub use gaussian::Gaussian;
 pub use ggx::Ggx;
+pub use rough_dielectric::RoughDielectric;
 pub use roughness::Roughness;
 pub use torrance_sparrow::{Fresnel, Masking, NormalSampling, TorranceSparrow};
