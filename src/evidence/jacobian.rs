@@ -29,6 +29,11 @@ const LINES: usize = 6;
 const LINE_POINTS: usize = 128;
 const HALVINGS: usize = 24;
 
+/// Towards the ends of a line it is scanned at 2^−8, where the even scan ends, to
+/// 2^−28 from them: a lobe drawn more rarely does not show in the density of others.
+const RIM: u32 = 8;
+const RIM_END: u32 = 29;
+
 /// Values of the unused random numbers at which a branch is looked for.
 const BRANCHES: usize = 64;
 
@@ -80,7 +85,7 @@ impl Jacobian {
         let oriented: Vec<f64> = points.iter().map(|p| p.slopes[i].cross(p.slopes[j]).dot(p.wi)).collect();
         let same_turn = oriented.iter().all(|o| *o > 0.0) || oriented.iter().all(|o| *o < 0.0);
         let shares = points.iter().map(|p| branch(meter, setup, p, [i, j])).collect::<Result<Vec<_>, _>>()?;
-        let one_branch = shares.iter().all(|(share, _)| *share == 1.0);
+        let one_branch = shares.iter().all(|(_, slack)| *slack == 0.0);
         let mut one_to_one = same_turn && one_branch && !has_jump(meter, setup, [i, j])?;
         // Before equality is found broken: continuous and oriented maps may
         // still meet a direction twice.
@@ -158,52 +163,73 @@ fn slopes(meter: &Meter, setup: &Setup) -> Result<Vec<Point>, Halt> {
     Ok(points)
 }
 
-/// Whether wi jumps anywhere on lines through the unit square: a step that
-/// does not shrink when it is halved again and again.
+/// Whether wi jumps anywhere on lines through the unit square. Looked for in even
+/// steps, and in ones that halve towards both ends, where a rare lobe may have its
+/// share.
 fn has_jump(meter: &Meter, setup: &Setup, active: [usize; 2]) -> Result<bool, Halt> {
     let mut stream = setup.key.with("stage", "jumps").block(0);
-    let mut samples = Samples::default();
+    let even: Vec<f64> = (0..LINE_POINTS).map(|k| (k as f64 + 0.5) / LINE_POINTS as f64).collect();
+    let low: Vec<f64> = (RIM..RIM_END).rev().map(|k| (-f64::from(k)).exp2()).collect();
+    let high: Vec<f64> = (RIM..RIM_END).map(|k| 1.0 - (-f64::from(k)).exp2()).collect();
     for axis in active {
         for _ in 0..LINES {
             let line: Vec<f64> = (0..meter.dimensions()).map(|_| 0.01 + 0.98 * stream.next_f64()).collect();
-            let row = |s: f64| {
-                let mut row = line.clone();
-                row[axis] = s;
-                row
-            };
-            let places: Vec<f64> = (0..LINE_POINTS).map(|k| (k as f64 + 0.5) / LINE_POINTS as f64).collect();
-            let u: Vec<f64> = places.iter().flat_map(|s| row(*s)).collect();
-            meter.sample(setup.wo, &u, setup.transport, &mut samples)?;
-            let widest = (1..LINE_POINTS)
-                .filter(|k| samples.lobe[*k].is_valid() && samples.lobe[k - 1].is_valid())
-                .map(|k| ((samples.wi[k] - samples.wi[k - 1]).length(), k))
-                .max_by(|a, b| a.0.total_cmp(&b.0));
-            let Some((start, k)) = widest else { continue };
-            let (mut lo, mut hi) = (places[k - 1], places[k]);
-            let mut step = start;
-            for _ in 0..HALVINGS {
-                let middle = 0.5 * (lo + hi);
-                let u: Vec<f64> = [lo, middle, hi].iter().flat_map(|s| row(*s)).collect();
-                meter.sample(setup.wo, &u, setup.transport, &mut samples)?;
-                if !samples.lobe.iter().all(|l| l.is_valid()) {
-                    step = 0.0;
-                    break;
+            for places in [&even, &low, &high] {
+                if jumps_between(meter, setup, &line, axis, places)? {
+                    return Ok(true);
                 }
-                let halves = [1, 2].map(|r| (samples.wi[r] - samples.wi[r - 1]).length());
-                if halves[0] > halves[1] {
-                    hi = middle
-                } else {
-                    lo = middle
-                }
-                step = halves[0].max(halves[1]);
-            }
-            // 24 halvings shrink a smooth step by 6e-8, a square root's by 2e-4.
-            if step > 0.01 * start {
-                return Ok(true);
             }
         }
     }
     Ok(false)
+}
+
+/// Whether wi jumps between `places` on the line along `axis`: to another kind of
+/// lobe, or by a step that does not shrink when it is halved again and again.
+fn jumps_between(
+    meter: &Meter,
+    setup: &Setup,
+    line: &[f64],
+    axis: usize,
+    places: &[f64],
+) -> Result<bool, Halt> {
+    let mut samples = Samples::default();
+    let row = |s: f64| {
+        let mut row = line.to_vec();
+        row[axis] = s;
+        row
+    };
+    let u: Vec<f64> = places.iter().flat_map(|s| row(*s)).collect();
+    meter.sample(setup.wo, &u, setup.transport, &mut samples)?;
+    let mut lobes = samples.lobe.iter().filter(|l| l.is_valid());
+    if lobes.next().is_some_and(|first| lobes.any(|l| l != first)) {
+        return Ok(true);
+    }
+    let widest = (1..places.len())
+        .filter(|k| samples.lobe[*k].is_valid() && samples.lobe[k - 1].is_valid())
+        .map(|k| ((samples.wi[k] - samples.wi[k - 1]).length(), k))
+        .max_by(|a, b| a.0.total_cmp(&b.0));
+    let Some((start, k)) = widest else { return Ok(false) };
+    let (mut lo, mut hi) = (places[k - 1], places[k]);
+    let mut step = start;
+    for _ in 0..HALVINGS {
+        let middle = 0.5 * (lo + hi);
+        let u: Vec<f64> = [lo, middle, hi].iter().flat_map(|s| row(*s)).collect();
+        meter.sample(setup.wo, &u, setup.transport, &mut samples)?;
+        if !samples.lobe.iter().all(|l| l.is_valid()) {
+            return Ok(false);
+        }
+        let halves = [1, 2].map(|r| (samples.wi[r] - samples.wi[r - 1]).length());
+        if halves[0] > halves[1] {
+            hi = middle
+        } else {
+            lo = middle
+        }
+        step = halves[0].max(halves[1]);
+    }
+    // 24 halvings shrink a smooth step by 6e-8, a square root's by 2e-4. Steps
+    // of rounding do not shrink.
+    Ok(step > 0.01 * start && start > 1e-6)
 }
 
 /// Points whose other origins are looked for, draws among which, starts for
@@ -283,18 +309,17 @@ fn branch(meter: &Meter, setup: &Setup, point: &Point, active: [usize; 2]) -> Re
     if d == 2 {
         return Ok((1.0, 0.0));
     }
-    let mut u = Vec::with_capacity(BRANCHES * d);
-    for k in 0..BRANCHES {
-        for j in 0..d {
-            let free = (k as f64 + 0.5) / BRANCHES as f64;
-            u.push(if active.contains(&j) { point.u[j] } else { free });
-        }
+    // A branch rarer than the spacing is most often at one of the ends.
+    let middles = (0..BRANCHES).map(|k| (k as f64 + 0.5) / BRANCHES as f64);
+    let mut u = Vec::with_capacity((BRANCHES + 2) * d);
+    for free in middles.chain([0.0, 1.0 - f64::EPSILON / 2.0]) {
+        u.extend((0..d).map(|j| if active.contains(&j) { point.u[j] } else { free }));
     }
     let mut samples = Samples::default();
     meter.sample(setup.wo, &u, setup.transport, &mut samples)?;
-    let same = (0..BRANCHES)
-        .filter(|k| samples.lobe[*k].is_valid() && (samples.wi[*k] - point.wi).length() < 1e-9)
-        .count();
-    let slack = if same == BRANCHES { 0.0 } else { 1.5 / BRANCHES as f64 };
+    let is_same = |k: usize| samples.lobe[k].is_valid() && (samples.wi[k] - point.wi).length() < 1e-9;
+    let same = (0..BRANCHES).filter(|k| is_same(*k)).count();
+    let alone = (0..BRANCHES + 2).all(is_same);
+    let slack = if alone { 0.0 } else { 1.5 / BRANCHES as f64 };
     Ok((same as f64 / BRANCHES as f64, slack))
 }

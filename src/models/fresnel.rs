@@ -40,7 +40,7 @@ pub fn dielectric(cos_i: f64, eta: f64) -> f64 {
 #[inline]
 pub fn transmitted(cos_i: f64, cos_t: f64, eta: f64) -> f64 {
     let (s, p) = (cos_i + eta * cos_t, eta * cos_i + cos_t);
-    2.0 * eta * cos_i * cos_t * (1.0 / (s * s) + 1.0 / (p * p))
+    2.0 * eta * ((cos_i / s) * (cos_t / s) + (cos_i / p) * (cos_t / p))
 }
 
 /// Reflectance of a conductor of complex index n + ik seen from vacuum.

@@ -3,13 +3,16 @@
 use crate::registry::Model;
 
 mod blend;
+mod coated_base;
 mod conductor;
 mod dielectric;
 pub mod fresnel;
+mod gauss_legendre;
 mod lambert;
 mod metal;
 pub mod microfacet;
 mod oren_nayar;
+mod plastic;
 
 pub use blend::Blend;
 pub use conductor::{Conductor, ConductorFresnel};
@@ -17,6 +20,7 @@ pub use dielectric::Dielectric;
 pub use lambert::{HemisphereSampling, Lambert};
 pub use metal::Metal;
 pub use oren_nayar::OrenNayar;
+pub use plastic::Plastic;
 
 /// Every built-in model, in the order in which `gonio list` shows them.
 pub fn all() -> Vec<Model> {
@@ -27,6 +31,8 @@ pub fn all() -> Vec<Model> {
         conductor::model(),
         microfacet::torrance_sparrow::model(),
         microfacet::rough_dielectric::model(),
+        plastic::model(),
+        microfacet::rough_plastic::model(),
         blend::model(),
     ]
 }

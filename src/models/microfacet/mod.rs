@@ -1,6 +1,7 @@
 //! Rough surfaces as many small facets: distributions of normals and the
 //! models made of them, one concept a file.
 
+mod albedo;
 mod area;
 mod beckmann;
 mod chebyshev;
@@ -9,6 +10,7 @@ mod gaussian;
 mod ggx;
 mod half_vector;
 pub(super) mod rough_dielectric;
+pub(super) mod rough_plastic;
 mod roughness;
 mod smith;
 pub(super) mod torrance_sparrow;
@@ -19,5 +21,6 @@ pub use distribution::Distribution;
 pub use gaussian::Gaussian;
 pub use ggx::Ggx;
 pub use rough_dielectric::RoughDielectric;
+pub use rough_plastic::RoughPlastic;
 pub use roughness::Roughness;
 pub use torrance_sparrow::{Fresnel, Masking, NormalSampling, TorranceSparrow};
