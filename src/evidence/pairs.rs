@@ -158,9 +158,8 @@ impl Pairs {
             worst
         };
         let (error, a, b) = worst(setup.transport);
-        self.discrete.look(error, || {
-            Place::pair(setup.wo, wi).value("flux wi → wo", a).value("flux wo → wi", b)
-        });
+        self.discrete
+            .look(error, || Place::pair(setup.wo, wi).value("flux wi → wo", a).value("flux wo → wi", b));
         self.discrete_rescaled.look(worst(setup.transport.other()).0, || Place::pair(setup.wo, wi));
         Ok(())
     }
@@ -196,8 +195,7 @@ fn exchange(meter: &Meter, setup: &Setup, wi: &[Direction]) -> Result<Vec<Exchan
         let mut worst = Exchange::default();
         for c in 0..channels {
             let (f, b) = (forward[k * channels + c], backward[c]);
-            let scaled =
-                |t| (f / eta_squared(setup, setup.wo, t), b / eta_squared(setup, *wi, t));
+            let scaled = |t| (f / eta_squared(setup, setup.wo, t), b / eta_squared(setup, *wi, t));
             let (a, z) = scaled(setup.transport);
             let (there, back) = scaled(setup.transport.other());
             worst.error_rescaled = worst.error_rescaled.max(relative_error(there, back, setup.floor()));

@@ -232,3 +232,183 @@ impl Bsdf for RoughDielectric {
         valid.then_some(Sample { wi: self.upright(given, wi), weight: Spectrum::from(weight), pdf, lobe })
     }
 }
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use crate::models::microfacet::{Fresnel, Masking, TorranceSparrow};
+    use rand_xoshiro::Xoshiro256PlusPlus;
+    use rand_xoshiro::rand_core::{Rng, SeedableRng};
+
+    const LAST: f64 = 1.0 - f64::EPSILON / 2.0;
+    const MODES: [Transport; 2] = [Transport::Radiance, Transport::Importance];
+
+    /// Every combination that can be built, isotropic and not.
+    fn all() -> Vec<RoughDielectric> {
+        let mut all = Vec::new();
+        for (x, y) in [(1e-4, 1e-4), (0.2, 0.2), (1.0, 1.0), (0.05, 0.6)] {
+            let alpha = Roughness { x, y };
+            for d in [Distribution::ggx(alpha), Distribution::beckmann(alpha), Distribution::gaussian(alpha)]
+            {
+                for eta in [1.01, 1.5, 4.0, 0.4] {
+                    for sampling in [NormalSampling::Visible, NormalSampling::All] {
+                        all.extend(RoughDielectric::new(d.clone(), eta, sampling));
+                    }
+                }
+            }
+        }
+        assert_eq!(all.len(), 4 * 4 * 5);
+        all
+    }
+
+    fn ggx(alpha: f64, eta: f64) -> RoughDielectric {
+        let d = Distribution::ggx(Roughness::isotropic(alpha));
+        RoughDielectric::new(d, eta, NormalSampling::Visible).unwrap()
+    }
+
+    fn random() -> impl FnMut() -> f64 {
+        let mut random = Xoshiro256PlusPlus::seed_from_u64(7);
+        move || (random.next_u64() >> 11) as f64 * f64::EPSILON / 2.0
+    }
+
+    #[test]
+    fn sample_eval_and_pdf_agree_in_both_modes_from_both_sides() {
+        let mut uniform = random();
+        for model in all() {
+            let rough = model.distribution.alpha();
+            // Rounding of m, magnified by the slope of D and by how little two near
+            // indices refract.
+            let tolerance = 1e-9 + 2e-12 / rough.x.min(rough.y) / (model.eta - 1.0).abs().min(1.0);
+            for theta in [0.0f64, 30.0, 75.0, 89.0, 91.0, 130.0, 180.0] {
+                let wo = Direction::from_angles(theta.to_radians(), 0.7);
+                for k in 0..100 {
+                    let (u, mode) = ([uniform(), uniform(), uniform()], MODES[k % 2]);
+                    let Some(s) = model.sample(wo, &u, mode) else { continue };
+                    let (f, pdf) = (model.eval(wo, s.wi, mode)[0], model.pdf(wo, s.wi, mode));
+                    assert!((s.pdf / pdf - 1.0).abs() < tolerance, "{model:?} {theta} {s:?} {pdf}");
+                    assert!((s.wi.length() - 1.0).abs() < 1e-14);
+                    assert_eq!(s.lobe.contains(Lobe::REFLECTION), wo.same_side(s.wi));
+                    let weight = f * s.wi.z.abs() / pdf;
+                    assert!(
+                        (s.weight[0] / weight - 1.0).abs() < tolerance,
+                        "{model:?} {theta} {s:?} {weight}"
+                    );
+                    // Importance is the adjoint of radiance, and radiance over η² is
+                    // the same both ways.
+                    let adjoint = model.eval(s.wi, wo, mode.other())[0];
+                    assert!((adjoint / f - 1.0).abs() < tolerance, "{model:?} {theta} {s:?}");
+                    let eta2 = |w: Direction| if w.z > 0.0 { 1.0 } else { model.eta * model.eta };
+                    let [there, back] = [(wo, s.wi), (s.wi, wo)]
+                        .map(|(o, i)| model.eval(o, i, Transport::Radiance)[0] / eta2(o));
+                    assert!((back / there - 1.0).abs() < tolerance, "{model:?} {theta} {s:?}");
+                }
+            }
+        }
+    }
+
+    #[test]
+    fn edges_give_valid_output_or_none() {
+        let grazing = Direction::new(1.0, 0.0, 1e-300);
+        let horizon = Direction::new(1.0, 0.0, 0.0);
+        let views = [Direction::NORMAL, Direction::from_angles(1.5705, 2.0), grazing];
+        for model in all() {
+            for wo in views.into_iter().flat_map(|w| [w, w.flipped()]) {
+                for u in (0..8).map(|k| [0, 1, 2].map(|b| if k >> b & 1 == 0 { 0.0 } else { LAST })) {
+                    let Some(s) = model.sample(wo, &u, Transport::Radiance) else { continue };
+                    assert!((s.wi.length() - 1.0).abs() < 1e-14 && s.wi.z != 0.0, "{model:?} {wo:?} {u:?}");
+                    assert!(s.pdf > 0.0 && s.pdf.is_finite() && s.weight[0].is_finite());
+                    assert!(model.sample(horizon, &u, Transport::Radiance).is_none());
+                }
+                for wi in [horizon, wo, -wo, wo.mirrored(), wo.flipped(), grazing, -grazing] {
+                    for mode in MODES {
+                        let (f, p) = (model.eval(wo, wi, mode)[0], model.pdf(wo, wi, mode));
+                        assert!(f >= 0.0 && p >= 0.0, "{model:?} {wo:?} {wi:?}: {f} {p}");
+                        assert!(wi.z != 0.0 || (f == 0.0 && p == 0.0));
+                    }
+                }
+            }
+        }
+    }
+
+    /// Reflection is Torrance and Sparrow's, and transmission Walter's eq. 21 as it
+    /// is printed, for light that goes from i to o, with the masking of this model.
+    #[test]
+    fn equals_the_published_forms() {
+        let (eta, alpha) = (1.5, Roughness::isotropic(0.4));
+        let d = Distribution::ggx(alpha);
+        let model = ggx(0.4, eta);
+        let fresnel = Fresnel::Dielectric(eta);
+        let mirror =
+            TorranceSparrow::new(d.clone(), Masking::Smith, fresnel, NormalSampling::Visible).unwrap();
+        let mode = Transport::Radiance;
+        for (to, ti, phi) in [(0.3, 0.5, 2.0), (1.3, 1.1, 3.0), (0.0, 0.4, 1.0)] {
+            let (wo, wi) = (Direction::from_angles(to, 0.2), Direction::from_angles(ti, 0.2 + phi));
+            let reference = mirror.eval(wo, wi, mode)[0];
+            assert!((model.eval(wo, wi, mode)[0] / reference - 1.0).abs() < 1e-13);
+            for (o, i) in [(wo, -wi.rotated(3.0)), (-wo, wi.rotated(2.9))] {
+                let index = |w: Direction| if w.z > 0.0 { 1.0 } else { eta };
+                let (no, ni) = (index(o), index(i));
+                let mut m = -(i * ni + o * no).normalized();
+                let (om, im) = (o.dot(m), i.dot(m));
+                if m.z < 0.0 {
+                    m = -m;
+                }
+                let value = model.eval(o, i, mode)[0];
+                if om * im >= 0.0 || o.dot(m) * o.z <= 0.0 {
+                    assert_eq!(value, 0.0);
+                    continue;
+                }
+                let up = |w: Direction| if w.z > 0.0 { w } else { w.flipped() };
+                let [a, b] = [o, i].map(|w| d.lambda(up(w)));
+                let g = (libm::lgamma(1.0 + a) + libm::lgamma(1.0 + b) - libm::lgamma(2.0 + a + b)).exp();
+                let part = 1.0 - crate::models::fresnel::dielectric(im.abs(), no / ni);
+                let printed = (im * om / (i.z * o.z)).abs() * no * no * part * g * d.density(m)
+                    / (ni * im + no * om).powi(2);
+                assert!((value / printed - 1.0).abs() < 1e-12, "{o:?} {i:?}: {value} {printed}");
+            }
+        }
+    }
+
+    /// Flux that is reflected and transmitted, by drawn weights.
+    fn flux(model: &RoughDielectric, wo: Direction) -> [f64; 2] {
+        let claims = model.describe().claims;
+        let mut uniform = random();
+        let n = 40_000;
+        let mut flux = [0.0; 2];
+        for _ in 0..n {
+            let u = [uniform(), uniform(), uniform()];
+            let Some(s) = model.sample(wo, &u, Transport::Radiance) else { continue };
+            let factor = claims.flux_factor(wo.z > 0.0, s.wi.z > 0.0, Transport::Radiance);
+            flux[usize::from(!wo.same_side(s.wi))] += s.weight[0] * factor / f64::from(n);
+        }
+        flux
+    }
+
+    #[test]
+    fn loses_what_it_scatters_twice_and_nothing_when_smooth() {
+        for theta in [0.0f64, 40.0, 80.0, 100.0, 150.0] {
+            let wo = Direction::from_angles(theta.to_radians(), 0.7);
+            for eta in [1.1, 1.5, 2.4] {
+                let relative = if wo.z > 0.0 { eta } else { 1.0 / eta };
+                let smooth = crate::models::fresnel::dielectric(wo.z.abs(), relative);
+                let [r, t] = flux(&ggx(1e-4, eta), wo);
+                // Half a per cent of chance, and the facets around a critical angle.
+                assert!((r - smooth).abs() < 0.01 && (r + t - 1.0).abs() < 1e-3, "{theta} {eta}: {r} {t}");
+                let mut last = 1.0;
+                for alpha in [0.1, 0.4, 1.0] {
+                    let sum: f64 = flux(&ggx(alpha, eta), wo).iter().sum();
+                    assert!(sum < last && sum > 0.1, "{theta} {eta} {alpha}: {sum}");
+                    last = sum;
+                }
+            }
+        }
+    }
+
+    #[test]
+    fn unbuildable_parameters_name_the_way_out() {
+        let d = Distribution::gaussian(Roughness::isotropic(0.1));
+        let build = |eta| RoughDielectric::new(d.clone(), eta, NormalSampling::Visible).unwrap_err();
+        assert!(build(1.0).contains("eta = 1 must") && build(f64::NAN).contains("NaN"));
+        assert!(build(1.5).contains("sampling=normals"));
+    }
+}

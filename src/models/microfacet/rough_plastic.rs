@@ -112,3 +112,103 @@ impl Bsdf for RoughPlastic {
         valid.then_some(Sample { wi, weight: Spectrum::from(weight), pdf, lobe })
     }
 }
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use crate::models::Plastic;
+
+    const LAST: f64 = 1.0 - f64::EPSILON / 2.0;
+    const R: Transport = Transport::Radiance;
+
+    fn all() -> Vec<RoughPlastic> {
+        let mut all = Vec::new();
+        for alpha in [1e-4, 0.1, 1.0] {
+            let alpha = Roughness::isotropic(alpha);
+            for d in [Distribution::ggx(alpha), Distribution::beckmann(alpha)] {
+                for (eta, reflectance) in [(1.01, 1.0), (1.5, 0.0), (1.5, 0.6), (4.0, 1.0)] {
+                    all.push(RoughPlastic::new(d.clone(), eta, reflectance).unwrap());
+                }
+            }
+        }
+        all
+    }
+
+    #[test]
+    fn sample_eval_and_pdf_agree() {
+        for model in all() {
+            for theta in [0.0f64, 40.0, 85.0] {
+                let wo = Direction::from_angles(theta.to_radians(), 0.7);
+                for k in 0..200 {
+                    let u = [0.618_033_988_749_895, 0.754_877_666_246_692_7]
+                        .map(|a| (0.5 + a * f64::from(k)).fract());
+                    let Some(s) = model.sample(wo, &u, R) else { continue };
+                    let (f, pdf) = (model.eval(wo, s.wi, R)[0], model.pdf(wo, s.wi, R));
+                    assert!((s.pdf / pdf - 1.0).abs() < 1e-7, "{model:?} {theta} {s:?} {pdf}");
+                    assert!((s.weight[0] * pdf / (f * s.wi.z) - 1.0).abs() < 1e-7 || f == 0.0);
+                    assert!((model.eval(s.wi, wo, R)[0] / f - 1.0).abs() < 1e-12);
+                }
+            }
+        }
+    }
+
+    /// Away from the mirror direction, where the coat's lobe is nothing.
+    #[test]
+    fn goes_to_smooth_plastic() {
+        let alpha = Roughness::isotropic(1e-4);
+        let rough = RoughPlastic::new(Distribution::beckmann(alpha), 1.5, 0.6).unwrap();
+        let smooth = Plastic::new(0.6, 1.5);
+        for (to, ti) in [(0.0, 0.5), (1.0, 0.2), (1.4, 1.2)] {
+            let (wo, wi) = (Direction::from_angles(to, 0.0), Direction::from_angles(ti, 1.0));
+            let ratio = rough.eval(wo, wi, R)[0] / smooth.eval(wo, wi, R)[0];
+            assert!((ratio - 1.0).abs() < 1e-5, "{to} {ti}: {ratio}");
+        }
+    }
+
+    /// What was drawn of a white base is all of the light; of a grey one, less.
+    #[test]
+    fn a_white_base_is_lossless() {
+        for (reflectance, lossless) in [(1.0, true), (0.7, false)] {
+            for alpha in [0.05, 0.5, 1.0] {
+                let d = Distribution::ggx(Roughness::isotropic(alpha));
+                let model = RoughPlastic::new(d, 1.5, reflectance).unwrap();
+                assert_eq!(model.describe().claims.lossless, lossless);
+                let wo = Direction::from_angles(1.2, 0.7);
+                let n = 1 << 16;
+                let weight = |k: i32| {
+                    let u = [0.754_877_666_246_692_7, 0.569_840_290_998_053_2]
+                        .map(|a| (0.5 + a * f64::from(k)).fract());
+                    model.sample(wo, &u, R).map_or(0.0, |s| s.weight[0])
+                };
+                let albedo = (0..n).map(weight).sum::<f64>() / f64::from(n);
+                assert!(
+                    if lossless { (albedo - 1.0).abs() < 2e-3 } else { albedo < 0.9 },
+                    "{alpha}: {albedo}"
+                );
+            }
+        }
+    }
+
+    #[test]
+    fn edges() {
+        let horizon = Direction::new(1.0, 0.0, 0.0);
+        let grazing = Direction::new(1.0, 0.0, 1e-300);
+        for model in all() {
+            for wo in [horizon, -Direction::NORMAL] {
+                assert!(model.sample(wo, &[0.5, 0.5], R).is_none());
+                assert_eq!((model.eval(wo, Direction::NORMAL, R)[0], model.pdf(wo, grazing, R)), (0.0, 0.0));
+            }
+            for wo in [Direction::NORMAL, grazing] {
+                for u in [[0.0, 0.0], [LAST, LAST], [LAST, 0.0], [0.0, LAST]] {
+                    let Some(s) = model.sample(wo, &u, R) else { continue };
+                    assert!(s.pdf > 0.0 && s.weight[0].is_finite(), "{model:?} {wo:?} {u:?}: {s:?}");
+                }
+                for wi in [grazing, grazing.mirrored(), wo, Direction::NORMAL] {
+                    assert!(!model.eval(wo, wi, R)[0].is_nan() && !model.pdf(wo, wi, R).is_nan());
+                }
+            }
+        }
+        let brushed = Distribution::ggx(Roughness { x: 0.1, y: 0.2 });
+        assert!(RoughPlastic::new(brushed, 1.5, 0.5).unwrap_err().contains("both tangents"));
+    }
+}
