@@ -29,9 +29,9 @@ const LINES: usize = 6;
 const LINE_POINTS: usize = 128;
 const HALVINGS: usize = 24;
 
-/// Towards the ends of a line it is scanned at 2^−8, where the even scan ends, to
+/// Towards the ends of a line it is scanned at 2^−6, within the even scan, to
 /// 2^−28 from them: a lobe drawn more rarely does not show in the density of others.
-const RIM: u32 = 8;
+const RIM: u32 = 6;
 const RIM_END: u32 = 29;
 
 /// Values of the unused random numbers at which a branch is looked for.

@@ -37,7 +37,7 @@ pub(in crate::models) fn model() -> Model {
         };
         RoughPlastic::new(distribution, p.number("eta"), p.number("reflectance"))
     })
-    .number("alpha", 0.2, 1e-4..=1.0, "roughness of the coat")
+    .number("alpha", 0.2, 1e-3..=1.0, "roughness of the coat")
     .choice("distribution", &["ggx", "beckmann"], "distribution D of the coat's facet normals")
     .number("eta", 1.5, 1.01..=4.0, "index of refraction of the coat")
     .number("reflectance", 0.5, 0.0..=1.0, "reflectance of the base")
