@@ -3,61 +3,15 @@
 
 mod common;
 
+use common::measuring::{case, measure, told, verdicts};
 use common::{Bug, Ggx};
-use gonio::bsdf::{Direction, Subject, Transport};
+use gonio::bsdf::{Direction, Transport};
 use gonio::checks::{self, Verdict};
-use gonio::engine::{CaseResult, Options, run};
 use gonio::evidence::{Company, Variant};
-use gonio::suite::{Case, ClaimsPatch, Plan, Settings, Waiver};
-use std::collections::{BTreeMap, BTreeSet};
+use gonio::suite::Waiver;
+use std::collections::BTreeSet;
 use std::sync::Arc;
 use std::time::Duration;
-
-fn case(name: &str, subject: Arc<dyn Subject>, theta: f64, samples: u64) -> Case<'static> {
-    Case {
-        group: name.into(),
-        spelling: name.into(),
-        subject,
-        parameters: Default::default(),
-        theta_deg: theta,
-        phi_deg: 137.0,
-        transport: Transport::Radiance,
-        claims: ClaimsPatch::default(),
-        waivers: Vec::new(),
-        company: Company::default(),
-        reference: None,
-        checks: Vec::new(),
-        settings: Settings { samples, time_limit: Duration::from_secs(20), ..Settings::default() },
-    }
-}
-
-fn measure(cases: Vec<Case<'static>>) -> Vec<CaseResult<'static>> {
-    let plan = Plan {
-        suite: "test".into(),
-        seed: 1,
-        false_alarm: 1e-6,
-        share: None,
-        cases: cases.into_iter().map(Arc::new).collect(),
-    };
-    run(&plan, &Options::default(), &mut |_| {}).cases
-}
-
-/// The checks with each verdict over all cases.
-fn verdicts(results: &[CaseResult]) -> BTreeMap<Verdict, BTreeSet<&'static str>> {
-    let mut map: BTreeMap<Verdict, BTreeSet<&'static str>> = BTreeMap::new();
-    for finding in results.iter().flat_map(|r| &r.findings) {
-        map.entry(finding.outcome.verdict).or_default().insert(finding.check);
-    }
-    map
-}
-
-fn told(results: &[CaseResult], verdict: Verdict) -> Vec<String> {
-    let findings = results.iter().flat_map(|r| r.findings.iter().map(move |f| (r, f)));
-    findings
-        .filter(|(_, f)| f.outcome.verdict == verdict)
-        .map(|(r, f)| format!("{} {}: {}", r.case.label(), f.check, f.outcome.message))
-        .collect()
-}
 
 /// A bug, the checks that must find it, and those that may.
 type Row = (Bug, &'static [&'static str], &'static [&'static str]);

@@ -14,6 +14,16 @@ pub enum Transport {
     Importance,
 }
 
+impl Transport {
+    /// The other mode.
+    pub fn other(self) -> Self {
+        match self {
+            Self::Radiance => Self::Importance,
+            Self::Importance => Self::Radiance,
+        }
+    }
+}
+
 impl std::fmt::Display for Transport {
     fn fmt(&self, f: &mut std::fmt::Formatter<'_>) -> std::fmt::Result {
         f.write_str(match self {

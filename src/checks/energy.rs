@@ -14,7 +14,7 @@ pub(super) fn flux(evidence: &Evidence, farthest: bool) -> Option<(usize, f64, f
     let (partition, integrals) = (evidence.partition.as_ref()?, evidence.integrals.as_ref()?);
     let claims = &evidence.description.claims;
     let front = evidence.wo.z > 0.0;
-    let factor = |front_i: bool| claims.flux_factor(front, front_i, evidence.transport);
+    let factor = |front_i: bool| claims.flux_factor(front, front_i, evidence.scale());
     let channels = evidence.description.channels.len();
     let discrete = match evidence.draws.first() {
         Some(draws) => &draws.discrete[..],

@@ -1,12 +1,13 @@
 //! Light may take a path both ways.
 
 use super::outcome::{Check, Judgement, Outcome, Terms, Verdict, needs_determinism, needs_functions};
-use crate::bsdf::Description;
+use crate::bsdf::{Description, TransportModes};
 use crate::evidence::{Evidence, Measurement};
 
 /// eval(wo, wi)/η_o² = eval(wi, wo)/η_i² in radiance mode, its inverse in
 /// importance mode; the modes are each other's adjoint; the flux through a
-/// discrete lobe is the same both ways. Over directions spread evenly and drawn
+/// discrete lobe is the same both ways. Where transmission follows the scale of the
+/// other mode throughout, that is a convention, and told as one. Over directions spread evenly and drawn
 /// from the lobe, with a local search for the worst pair.
 pub struct Reciprocity;
 
@@ -35,6 +36,13 @@ impl Check for Reciprocity {
         let Some(pairs) = &evidence.pairs else { return Judgement::Missing };
         let identity = "eval(wo, wi)/η_o² = eval(wi, wo)/η_i²";
         let outcome = Outcome::of_tally(&pairs.reciprocity, identity, "f is not symmetric");
+        if pairs.follows_other_mode() && evidence.description.claims.transport != TransportModes::Both {
+            let message = format!(
+                "transmission is scaled as in {} transport, contrary to the declaration; measured as such",
+                evidence.scale()
+            );
+            return Outcome { verdict: Verdict::Warn, message, ..outcome }.into();
+        }
         if outcome.verdict == Verdict::Fail {
             return outcome.into();
         }

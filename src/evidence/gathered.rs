@@ -361,6 +361,15 @@ impl Evidence {
         no_sample && no_density && claimed && self.description.has.sample
     }
 
+    /// The mode of transport by whose scale (η_o/η_i)² transmission goes, which is
+    /// not the one measured where reciprocity tells that a subject has the other.
+    pub fn scale(&self) -> Transport {
+        match &self.pairs {
+            Some(pairs) if pairs.follows_other_mode() => self.transport.other(),
+            _ => self.transport,
+        }
+    }
+
     /// Whether no light leaves at all, by a measured integral and the discrete
     /// lobes met.
     pub fn is_black(&self) -> bool {

@@ -29,9 +29,9 @@ const LINES: usize = 6;
 const LINE_POINTS: usize = 128;
 const HALVINGS: usize = 24;
 
-/// Towards the ends of a line it is scanned at 2^−8, where the even scan ends, to
+/// Towards the ends of a line it is scanned at 2^−6, within the even scan, to
 /// 2^−28 from them: a lobe drawn more rarely does not show in the density of others.
-const RIM: u32 = 8;
+const RIM: u32 = 6;
 const RIM_END: u32 = 29;
 
 /// Values of the unused random numbers at which a branch is looked for.
@@ -85,7 +85,7 @@ impl Jacobian {
         let oriented: Vec<f64> = points.iter().map(|p| p.slopes[i].cross(p.slopes[j]).dot(p.wi)).collect();
         let same_turn = oriented.iter().all(|o| *o > 0.0) || oriented.iter().all(|o| *o < 0.0);
         let shares = points.iter().map(|p| branch(meter, setup, p, [i, j])).collect::<Result<Vec<_>, _>>()?;
-        let one_branch = shares.iter().all(|(share, _)| *share == 1.0);
+        let one_branch = shares.iter().all(|(_, slack)| *slack == 0.0);
         let mut one_to_one = same_turn && one_branch && !has_jump(meter, setup, [i, j])?;
         // Before equality is found broken: continuous and oriented maps may
         // still meet a direction twice.
@@ -163,10 +163,9 @@ fn slopes(meter: &Meter, setup: &Setup) -> Result<Vec<Point>, Halt> {
     Ok(points)
 }
 
-/// Whether wi jumps anywhere on lines through the unit square: to another kind
-/// of lobe, or by a step that does not shrink when it is halved again and again.
-/// Looked for in even steps, and in ones that halve towards both ends, where a rare
-/// lobe may have its share.
+/// Whether wi jumps anywhere on lines through the unit square. Looked for in even
+/// steps, and in ones that halve towards both ends, where a rare lobe may have its
+/// share.
 fn has_jump(meter: &Meter, setup: &Setup, active: [usize; 2]) -> Result<bool, Halt> {
     let mut stream = setup.key.with("stage", "jumps").block(0);
     let even: Vec<f64> = (0..LINE_POINTS).map(|k| (k as f64 + 0.5) / LINE_POINTS as f64).collect();
@@ -185,7 +184,8 @@ fn has_jump(meter: &Meter, setup: &Setup, active: [usize; 2]) -> Result<bool, Ha
     Ok(false)
 }
 
-/// Whether wi jumps between `places` on the line along `axis`, where its step is widest.
+/// Whether wi jumps between `places` on the line along `axis`: to another kind of
+/// lobe, or by a step that does not shrink when it is halved again and again.
 fn jumps_between(
     meter: &Meter,
     setup: &Setup,
@@ -309,18 +309,17 @@ fn branch(meter: &Meter, setup: &Setup, point: &Point, active: [usize; 2]) -> Re
     if d == 2 {
         return Ok((1.0, 0.0));
     }
-    let mut u = Vec::with_capacity(BRANCHES * d);
-    for k in 0..BRANCHES {
-        for j in 0..d {
-            let free = (k as f64 + 0.5) / BRANCHES as f64;
-            u.push(if active.contains(&j) { point.u[j] } else { free });
-        }
+    // A branch rarer than the spacing is most often at one of the ends.
+    let middles = (0..BRANCHES).map(|k| (k as f64 + 0.5) / BRANCHES as f64);
+    let mut u = Vec::with_capacity((BRANCHES + 2) * d);
+    for free in middles.chain([0.0, 1.0 - f64::EPSILON / 2.0]) {
+        u.extend((0..d).map(|j| if active.contains(&j) { point.u[j] } else { free }));
     }
     let mut samples = Samples::default();
     meter.sample(setup.wo, &u, setup.transport, &mut samples)?;
-    let same = (0..BRANCHES)
-        .filter(|k| samples.lobe[*k].is_valid() && (samples.wi[*k] - point.wi).length() < 1e-9)
-        .count();
-    let slack = if same == BRANCHES { 0.0 } else { 1.5 / BRANCHES as f64 };
+    let is_same = |k: usize| samples.lobe[k].is_valid() && (samples.wi[k] - point.wi).length() < 1e-9;
+    let same = (0..BRANCHES).filter(|k| is_same(*k)).count();
+    let alone = (0..BRANCHES + 2).all(is_same);
+    let slack = if alone { 0.0 } else { 1.5 / BRANCHES as f64 };
     Ok((same as f64 / BRANCHES as f64, slack))
 }

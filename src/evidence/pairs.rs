@@ -28,18 +28,24 @@ pub struct Pairs {
     pub reciprocity: Tally,
     /// The same if eval followed the other convention of the cosine.
     pub reciprocity_other: Tally,
+    /// The same if transmission followed the scale of the other mode of transport.
+    pub reciprocity_rescaled: Tally,
     /// Between the modes: eval*(wo, wi) = eval(wi, wo), where both are told apart.
     pub adjoint: Option<Tally>,
     /// The flux through discrete lobes is the same both ways.
     pub discrete: Tally,
+    /// The same if transmission followed the scale of the other mode of transport.
+    pub discrete_rescaled: Tally,
     /// Directions with their signed asymmetry (a − b)/max(a, b), for the map.
     pub map: Vec<(Direction, f64)>,
 }
 
 /// A pair's values as reciprocity compares them.
+#[derive(Default)]
 struct Exchange {
     error: f64,
     error_other: f64,
+    error_rescaled: f64,
     signed: f64,
     forward: f64,
     backward: f64,
@@ -51,7 +57,9 @@ impl Pairs {
         let mut found = Self {
             reciprocity: Tally::new(setup.tolerance()),
             reciprocity_other: Tally::new(setup.tolerance()),
+            reciprocity_rescaled: Tally::new(setup.tolerance()),
             discrete: Tally::new(setup.tolerance()),
+            discrete_rescaled: Tally::new(setup.tolerance()),
             ..Self::default()
         };
         let wi = probes::directions(setup, pilot, SPREAD);
@@ -84,6 +92,7 @@ impl Pairs {
                 .value("θi", wi.theta().to_degrees())
         });
         self.reciprocity_other.look(e.error_other, || Place::pair(setup.wo, wi));
+        self.reciprocity_rescaled.look(e.error_rescaled, || Place::pair(setup.wo, wi));
     }
 
     /// Walks from `wi` to where the asymmetry is larger.
@@ -132,31 +141,43 @@ impl Pairs {
         let back = (0..samples.len())
             .find(|k| samples.lobe[*k].is_discrete() && (samples.wi[*k] - setup.wo).length() < 1e-4);
         let (front_o, front_i) = (setup.wo.z > 0.0, wi.z > 0.0);
-        let there = setup.claims.flux_factor(front_o, front_i, setup.transport);
-        let here = setup.claims.flux_factor(front_i, front_o, setup.transport);
-        let mut worst = (0.0, 0.0, 0.0);
-        for (c, t) in throughput.iter().enumerate() {
-            let a = t * there;
-            let b = back.map_or(0.0, |k| samples.weight_of(k)[c] * samples.pdf[k] * here);
-            // A lobe of flux 1/20 that is drawn about as often is missed in 1024
-            // draws with probability 1.6e-23; a rarer one says nothing.
-            let error = if back.is_none() && a < 0.05 { 0.0 } else { relative_error(a, b, 1e-9) };
-            if !(error <= worst.0) {
-                worst = (error, a, b);
+        let worst = |transport| {
+            let there = setup.claims.flux_factor(front_o, front_i, transport);
+            let here = setup.claims.flux_factor(front_i, front_o, transport);
+            let mut worst = (0.0, 0.0, 0.0);
+            for (c, t) in throughput.iter().enumerate() {
+                let a = t * there;
+                let b = back.map_or(0.0, |k| samples.weight_of(k)[c] * samples.pdf[k] * here);
+                // A lobe of flux 1/20 that is drawn about as often is missed in 1024
+                // draws with probability 1.6e-23; a rarer one says nothing.
+                let error = if back.is_none() && a < 0.05 { 0.0 } else { relative_error(a, b, 1e-9) };
+                if !(error <= worst.0) {
+                    worst = (error, a, b);
+                }
             }
-        }
-        self.discrete.look(worst.0, || {
-            Place::pair(setup.wo, wi).value("flux wi → wo", worst.1).value("flux wo → wi", worst.2)
-        });
+            worst
+        };
+        let (error, a, b) = worst(setup.transport);
+        self.discrete
+            .look(error, || Place::pair(setup.wo, wi).value("flux wi → wo", a).value("flux wo → wi", b));
+        self.discrete_rescaled.look(worst(setup.transport.other()).0, || Place::pair(setup.wo, wi));
         Ok(())
+    }
+
+    /// Whether light is transmitted by the scale of the other mode of transport:
+    /// reciprocity is broken under its own scale, and nowhere under the other.
+    pub fn follows_other_mode(&self) -> bool {
+        (self.reciprocity.is_broken() || self.discrete.is_broken())
+            && !self.reciprocity_rescaled.is_broken()
+            && !self.discrete_rescaled.is_broken()
     }
 }
 
 /// η² of the side of a direction, as radiance is divided by it; inverted for
 /// importance.
-fn eta_squared(setup: &Setup, w: Direction) -> f64 {
+fn eta_squared(setup: &Setup, w: Direction, transport: Transport) -> f64 {
     match setup.claims.eta {
-        Some(eta) if w.z <= 0.0 => match setup.transport {
+        Some(eta) if w.z <= 0.0 => match transport {
             Transport::Radiance => eta * eta,
             Transport::Importance => 1.0 / (eta * eta),
         },
@@ -171,11 +192,13 @@ fn exchange(meter: &Meter, setup: &Setup, wi: &[Direction]) -> Result<Vec<Exchan
     let mut all = Vec::with_capacity(wi.len());
     for (k, wi) in wi.iter().enumerate() {
         meter.eval(*wi, &[setup.wo], setup.transport, &mut backward)?;
-        let mut worst = Exchange { error: 0.0, error_other: 0.0, signed: 0.0, forward: 0.0, backward: 0.0 };
+        let mut worst = Exchange::default();
         for c in 0..channels {
             let (f, b) = (forward[k * channels + c], backward[c]);
-            let a = f / eta_squared(setup, setup.wo);
-            let z = b / eta_squared(setup, *wi);
+            let scaled = |t| (f / eta_squared(setup, setup.wo, t), b / eta_squared(setup, *wi, t));
+            let (a, z) = scaled(setup.transport);
+            let (there, back) = scaled(setup.transport.other());
+            worst.error_rescaled = worst.error_rescaled.max(relative_error(there, back, setup.floor()));
             let error = relative_error(a, z, setup.floor());
             let (cos_o, cos_i) = (setup.wo.abs_cos_theta(), wi.abs_cos_theta());
             let other = match meter.cosine.get() {
@@ -196,10 +219,7 @@ fn exchange(meter: &Meter, setup: &Setup, wi: &[Direction]) -> Result<Vec<Exchan
 /// eval in one mode against the exchanged eval in the other.
 fn adjoint(meter: &Meter, setup: &Setup, wi: &[Direction]) -> Result<Tally, Halt> {
     let mut tally = Tally::new(setup.tolerance());
-    let other = match setup.transport {
-        Transport::Radiance => Transport::Importance,
-        Transport::Importance => Transport::Radiance,
-    };
+    let other = setup.transport.other();
     let channels = meter.channels();
     let (mut own, mut exchanged) = (Vec::new(), Vec::new());
     meter.eval(setup.wo, wi, setup.transport, &mut own)?;

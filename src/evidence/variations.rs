@@ -82,8 +82,9 @@ impl Variation {
     ) -> Result<Vec<Self>, Halt> {
         let wi = probes::directions(setup, pilot, ROWS);
         // A parameter may well do nothing at the case's own wo: masking of a
-        // smooth surface begins within a fraction of a degree of the horizon.
-        let given = [setup.wo, oblique(setup, 60.0), oblique(setup, 89.9)];
+        // smooth surface begins within a fraction of a degree of the horizon, and
+        // beyond the critical angle (14.5° for an index of 4) all is reflected.
+        let given = [setup.wo, oblique(setup, 60.0), oblique(setup, 89.9), oblique(setup, 10.0)];
         let own = Response::of(meter, setup, &given, &wi)?;
         let mut all = Vec::new();
         for variant in variants {

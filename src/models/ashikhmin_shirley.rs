@@ -1,7 +1,7 @@
 //! Ashikhmin and Shirley's anisotropic Phong model.
 
 use super::lambert::sample_cosine;
-use super::microfacet::torrance_sparrow::half_vector;
+use super::microfacet::half_vector;
 use super::{fresnel, mixture};
 use crate::bsdf::{Bsdf, Description, Direction, Lobe, Sample, Spectrum, Transport};
 use crate::registry::Model;
@@ -99,7 +99,7 @@ impl Bsdf for AshikhminShirley {
 
     #[inline]
     fn eval(&self, wo: Direction, wi: Direction, _: Transport) -> Spectrum {
-        let Some((h, om)) = half_vector(wo, wi) else {
+        let Some((h, om)) = half_vector::of_reflection(wo, wi) else {
             return Spectrum::zero(1);
         };
         let base = 28.0 / (23.0 * PI) * self.rd * (1.0 - self.rs);
@@ -110,7 +110,7 @@ impl Bsdf for AshikhminShirley {
 
     #[inline]
     fn pdf(&self, wo: Direction, wi: Direction, _: Transport) -> f64 {
-        let Some((h, om)) = half_vector(wo, wi) else {
+        let Some((h, om)) = half_vector::of_reflection(wo, wi) else {
             return 0.0;
         };
         let [specular, diffuse] = self.shares(wo);

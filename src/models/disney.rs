@@ -2,7 +2,7 @@
 
 use super::lambert::sample_cosine;
 use super::largest_albedo::largest_albedo;
-use super::microfacet::torrance_sparrow::half_vector;
+use super::microfacet::half_vector;
 use super::microfacet::{Ggx, Gtr1, Roughness};
 use super::mixture;
 use crate::bsdf::{Bsdf, Description, Direction, Lobe, Sample, Spectrum, Transport};
@@ -212,7 +212,7 @@ impl Bsdf for Disney {
 
     #[inline]
     fn eval(&self, wo: Direction, wi: Direction, _: Transport) -> Spectrum {
-        let Some((m, om)) = half_vector(wo, wi) else {
+        let Some((m, om)) = half_vector::of_reflection(wo, wi) else {
             return Spectrum::zero(3);
         };
         let weight = schlick_weight(om);
@@ -232,7 +232,7 @@ impl Bsdf for Disney {
 
     #[inline]
     fn pdf(&self, wo: Direction, wi: Direction, _: Transport) -> f64 {
-        let Some((m, om)) = half_vector(wo, wi) else {
+        let Some((m, om)) = half_vector::of_reflection(wo, wi) else {
             return 0.0;
         };
         let [cosine, specular, coat] = self.shares(wo);

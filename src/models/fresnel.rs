@@ -34,6 +34,15 @@ pub fn dielectric(cos_i: f64, eta: f64) -> f64 {
     (0.5 * (s * s + p * p)).min(1.0)
 }
 
+/// What a dielectric interface lets through, 1 − [`dielectric`], without the
+/// cancellation: from the cosines on both sides that Snell's law joins, `eta` as
+/// there. Exchanging the sides (cosines, and 1/eta for `eta`) gives the same.
+#[inline]
+pub fn transmitted(cos_i: f64, cos_t: f64, eta: f64) -> f64 {
+    let (s, p) = (cos_i + eta * cos_t, eta * cos_i + cos_t);
+    2.0 * eta * ((cos_i / s) * (cos_t / s) + (cos_i / p) * (cos_t / p))
+}
+
 /// Reflectance of a conductor of complex index n + ik seen from vacuum.
 #[inline]
 pub fn conductor(cos_i: f64, n: f64, k: f64) -> f64 {
@@ -106,6 +115,24 @@ mod tests {
             let below = refracted_cosine(cos, 1.5).unwrap();
             assert!((dielectric(cos, 1.5) - dielectric(below, 1.0 / 1.5)).abs() < 1e-13);
         }
+    }
+
+    #[test]
+    fn what_is_not_reflected_is_transmitted() {
+        for eta in [1.0 + 1e-9, 1.1, 1.5, 4.0, 1.0 / 1.5] {
+            for i in 1..=100 {
+                let cos = f64::from(i) / 100.0;
+                let Some(cos_t) = refracted_cosine(cos, eta) else { continue };
+                let through = transmitted(cos, cos_t, eta);
+                assert!((through + dielectric(cos, eta) - 1.0).abs() < 1e-14, "{eta} {cos}: {through}");
+                assert!((transmitted(cos_t, cos, 1.0 / eta) / through - 1.0).abs() < 1e-14);
+            }
+        }
+        // Towards grazing it goes like 2η (1/η² + 1)/cos θt times cos θi.
+        let cos_t = refracted_cosine(0.0, 1.5).unwrap();
+        let slope = 2.0 * 1.5 * (1.0 / 2.25 + 1.0) / cos_t;
+        let cos_t = refracted_cosine(1e-12, 1.5).unwrap();
+        assert!((transmitted(1e-12, cos_t, 1.5) / (1e-12 * slope) - 1.0).abs() < 1e-10);
     }
 
     #[test]

@@ -7,11 +7,13 @@ mod blend;
 #[cfg(test)]
 mod brute_force;
 mod clipped_cosine;
+mod coated_base;
 mod conductor;
 mod cosine_lobe;
 mod dielectric;
 mod disney;
 pub mod fresnel;
+mod gauss_legendre;
 mod lafortune;
 mod lambert;
 mod largest_albedo;
@@ -21,6 +23,7 @@ mod mixture;
 mod oren_nayar;
 mod oren_nayar_eon;
 mod phong;
+mod plastic;
 mod sheen;
 mod ward;
 
@@ -35,6 +38,7 @@ pub use metal::Metal;
 pub use oren_nayar::OrenNayar;
 pub use oren_nayar_eon::{EonSampling, OrenNayarEon};
 pub use phong::Phong;
+pub use plastic::Plastic;
 pub use sheen::Sheen;
 pub use ward::Ward;
 
@@ -54,6 +58,9 @@ pub fn all() -> Vec<Model> {
         lafortune::model(),
         disney::model(),
         sheen::model(),
+        microfacet::rough_dielectric::model(),
+        plastic::model(),
+        microfacet::rough_plastic::model(),
         blend::model(),
     ]
 }

@@ -1,7 +1,7 @@
 //! Estevez and Kulla's sheen of cloth.
 
 use super::lambert::HemisphereSampling;
-use super::microfacet::torrance_sparrow::half_vector;
+use super::microfacet::half_vector;
 use crate::bsdf::{Bsdf, Description, Direction, Lobe, Sample, Spectrum, Transport};
 use crate::registry::Model;
 use std::f64::consts::TAU;
@@ -92,7 +92,7 @@ impl Bsdf for Sheen {
 
     #[inline]
     fn eval(&self, wo: Direction, wi: Direction, _: Transport) -> Spectrum {
-        let Some((m, _)) = half_vector(wo, wi) else {
+        let Some((m, _)) = half_vector::of_reflection(wo, wi) else {
             return Spectrum::zero(1);
         };
         let d = self.density(m);

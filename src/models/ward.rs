@@ -1,7 +1,7 @@
 //! Ward's model in the form whose albedo is bounded.
 
 use super::lambert::sample_cosine;
-use super::microfacet::torrance_sparrow::half_vector;
+use super::microfacet::half_vector;
 use super::microfacet::{Beckmann, Roughness};
 use super::mixture;
 use crate::bsdf::{Bsdf, Description, Direction, Lobe, Sample, Spectrum, Transport};
@@ -67,7 +67,7 @@ impl Bsdf for Ward {
 
     #[inline]
     fn eval(&self, wo: Direction, wi: Direction, _: Transport) -> Spectrum {
-        let Some((m, om)) = half_vector(wo, wi) else {
+        let Some((m, om)) = half_vector::of_reflection(wo, wi) else {
             return Spectrum::zero(1);
         };
         let d = self.distribution.density(m);
@@ -77,7 +77,7 @@ impl Bsdf for Ward {
 
     #[inline]
     fn pdf(&self, wo: Direction, wi: Direction, _: Transport) -> f64 {
-        let Some((m, om)) = half_vector(wo, wi) else {
+        let Some((m, om)) = half_vector::of_reflection(wo, wi) else {
             return 0.0;
         };
         let d = self.distribution.density(m);

@@ -1,6 +1,10 @@
 //! A GGX reflector written for the tests, with one bug at a time.
 #![allow(dead_code)]
 
+pub mod glass;
+pub mod measuring;
+pub mod plastic;
+
 use gonio::bsdf::{Bsdf, Description, Direction, Lobe, RandomNumbers, Sample, Spectrum, Transport};
 use std::f64::consts::PI;
 
@@ -78,17 +82,17 @@ impl Ggx {
         Self { alpha, bug, calls: Default::default(), last: Default::default() }
     }
 
-    fn d(&self, h: Direction, alpha: f64) -> f64 {
+    pub fn d(&self, h: Direction, alpha: f64) -> f64 {
         let s = (h.x * h.x + h.y * h.y) / (alpha * alpha) + h.z * h.z;
         1.0 / (PI * alpha * alpha * s * s)
     }
 
-    fn lambda(&self, w: Direction, alpha: f64) -> f64 {
+    pub fn lambda(&self, w: Direction, alpha: f64) -> f64 {
         let tan2 = (w.x * w.x + w.y * w.y) / (w.z * w.z);
         0.5 * ((1.0 + alpha * alpha * tan2).sqrt() - 1.0)
     }
 
-    fn value(&self, wo: Direction, wi: Direction) -> f64 {
+    pub fn value(&self, wo: Direction, wi: Direction) -> f64 {
         let above = wi.z > 0.0 || (self.bug == Bug::NoHorizon && wi.z < 0.0);
         if wo.z <= 0.0 || !above {
             return 0.0;
@@ -108,7 +112,7 @@ impl Ggx {
         fresnel * d * g / (4.0 * wo.z * wi.z.abs())
     }
 
-    fn visible_normal(&self, wo: Direction, u: &[f64]) -> Direction {
+    pub fn visible_normal(&self, wo: Direction, u: &[f64]) -> Direction {
         let v = Direction::new(self.alpha * wo.x, self.alpha * wo.y, wo.z).normalized();
         let planar = v.x * v.x + v.y * v.y;
         let t1 = if planar > 0.0 {

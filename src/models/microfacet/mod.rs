@@ -1,6 +1,7 @@
 //! Rough surfaces as many small facets: distributions of normals and the
 //! models made of them, one concept a file.
 
+mod albedo;
 mod area;
 mod beckmann;
 mod chebyshev;
@@ -10,7 +11,11 @@ mod ggx;
 mod ggx_loss;
 pub(super) mod ggx_multiscatter;
 mod gtr1;
+pub(super) mod half_vector;
+pub(super) mod rough_dielectric;
+pub(super) mod rough_plastic;
 mod roughness;
+mod smith;
 pub(super) mod torrance_sparrow;
 mod v_cavity;
 
@@ -21,5 +26,7 @@ pub use ggx::Ggx;
 pub use ggx_loss::GgxLoss;
 pub use ggx_multiscatter::GgxMultiscatter;
 pub use gtr1::Gtr1;
+pub use rough_dielectric::RoughDielectric;
+pub use rough_plastic::RoughPlastic;
 pub use roughness::Roughness;
 pub use torrance_sparrow::{Fresnel, Masking, NormalSampling, TorranceSparrow};

@@ -1,6 +1,6 @@
 //! Torrance and Sparrow's reflection from rough surfaces.
 
-use super::{Distribution, Roughness, v_cavity};
+use super::{Distribution, Roughness, half_vector, v_cavity};
 use crate::bsdf::{Bsdf, Description, Direction, Lobe, Sample, Spectrum, Transport};
 use crate::models::{Metal, fresnel};
 use crate::registry::{Model, Role};
@@ -52,13 +52,7 @@ pub struct TorranceSparrow {
 /// The registered model `torrance-sparrow`.
 pub(in crate::models) fn model() -> Model {
     Model::new("torrance-sparrow", "reflection from microfacets (Torrance and Sparrow 1967)", |p| {
-        let x = p.number("alpha");
-        let y = match p.number("alpha_y") {
-            0.0 => x,
-            y if y < 1e-4 => return Err("alpha_y must be 0, which means as alpha, or from 1e-4 to 1".into()),
-            y => y,
-        };
-        let alpha = Roughness { x, y };
+        let alpha = Roughness::declared(p.number("alpha"), p.number("alpha_y"))?;
         TorranceSparrow::new(
             match p.text("distribution") {
                 "beckmann" => Distribution::beckmann(alpha),
@@ -172,19 +166,6 @@ impl TorranceSparrow {
     }
 }
 
-/// The half vector and its cosine with both directions; `None` off the front
-/// side, and where both are so close to the horizon and opposite that their
-/// sum has no length in f64.
-#[inline]
-pub(in crate::models) fn half_vector(wo: Direction, wi: Direction) -> Option<(Direction, f64)> {
-    if wo.z <= 0.0 || wi.z <= 0.0 {
-        return None;
-    }
-    let sum = wo + wi;
-    let length = sum.length();
-    (length > 0.0).then(|| (sum * (1.0 / length), 0.5 * length))
-}
-
 impl Bsdf for TorranceSparrow {
     fn describe(&self) -> Description {
         let third = self.sampling == NormalSampling::Visible && self.masking == Masking::VCavity;
@@ -200,7 +181,7 @@ impl Bsdf for TorranceSparrow {
 
     #[inline]
     fn eval(&self, wo: Direction, wi: Direction, _: Transport) -> Spectrum {
-        let Some((m, om)) = half_vector(wo, wi) else {
+        let Some((m, om)) = half_vector::of_reflection(wo, wi) else {
             return Spectrum::zero(self.channels());
         };
         let d = self.distribution.density(m);
@@ -212,7 +193,7 @@ impl Bsdf for TorranceSparrow {
 
     #[inline]
     fn pdf(&self, wo: Direction, wi: Direction, _: Transport) -> f64 {
-        let Some((m, om)) = half_vector(wo, wi) else {
+        let Some((m, om)) = half_vector::of_reflection(wo, wi) else {
             return 0.0;
         };
         let d = self.distribution.density(m);
