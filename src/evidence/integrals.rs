@@ -109,6 +109,7 @@ impl Integrals {
             mass: 1e-5,
             value: 2e-5,
             evaluations,
+            independent: meter.description.table.is_some(),
         };
         let cosine = CosineDensity::new(setup);
         let mut value = Vec::new();

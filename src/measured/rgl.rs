@@ -1,0 +1,175 @@
+//! The measurements of J. Dupuy and W. Jakob, *An adaptive parameterization for
+//! efficient material acquisition and rendering*, SIGGRAPH Asia 2018 (the RGL
+//! material database of EPFL).
+
+use super::warp::{Blend, Grid, Warp, locate};
+use crate::bsdf::{Bsdf, Description, Direction, Lobe, Sample, Spectrum, Table, Transport};
+use std::f64::consts::{FRAC_PI_2, PI, TAU};
+
+/// Below this, 2π² u sin θm counts as this: at the pole the map from the square
+/// to microfacet normals m is singular. As the authors' reader has it.
+const SMALLEST_AREA: f64 = 1e-6;
+
+/// An RGL measurement: f·cos θi for each wo of a grid, over a square that two
+/// warps stretch where light is.
+///
+/// A point of the square is warped by the luminance (so that it follows f·cos),
+/// then by the density of visible normals, to (u, v) of the microfacet normal m:
+/// θm = u² π/2, φm = 2π v − π (paper, §5). f·cos θi is the spectrum stored at
+/// the point between the warps times D(m)/(4 σ(wo)). The file's ωi is gonio's
+/// given direction wo, its ωo gonio's wi. Values between the stored wo are
+/// interpolated linearly in φo and θo.
+#[derive(Clone, Debug)]
+pub struct Rgl {
+    pub(super) name: String,
+    pub(super) channels: Vec<String>,
+    pub(super) phi: Vec<f64>,
+    pub(super) theta: Vec<f64>,
+    /// D over (u, v) of m; `None` where the stored spectra are f·cos themselves.
+    pub(super) scale: Option<Scale>,
+    pub(super) vndf: Warp,
+    pub(super) luminance: Warp,
+    pub(super) spectra: Grid,
+    pub(super) isotropic: bool,
+    /// Into how many parts of 2π the measured φo fold: 1, 2 or 4.
+    pub(super) fold: u32,
+}
+
+/// The factor D(m)/(4 σ(wo)) of the stored spectra.
+#[derive(Clone, Debug)]
+pub(super) struct Scale {
+    /// Distribution of normals, over (u, v) of m.
+    pub ndf: Grid,
+    /// Projected area of the microsurface, over (u, v) of wo.
+    pub sigma: Grid,
+}
+
+/// u of a polar angle.
+pub(super) fn u_of_theta(theta: f64) -> f64 {
+    (theta / FRAC_PI_2).sqrt()
+}
+
+/// v in [0, 1) of an azimuth.
+pub(super) fn v_of_phi(phi: f64) -> f64 {
+    let v = (phi + PI) / TAU;
+    v - v.floor()
+}
+
+/// The microfacet normal at (u, v), its polar angle's sine, and the solid angle
+/// of a unit of area there: dω = 2π² u sin θm du dv.
+pub(super) fn normal([u, v]: [f64; 2], phi0: f64) -> (Direction, f64) {
+    let m = Direction::from_angles(u * u * FRAC_PI_2, TAU * v - PI + phi0);
+    (m, area(u, m))
+}
+
+/// 2π² u sin θm, see [`SMALLEST_AREA`].
+pub(super) fn area(u: f64, m: Direction) -> f64 {
+    (2.0 * PI * PI * u * m.x.hypot(m.y)).max(SMALLEST_AREA)
+}
+
+/// What depends on wo alone.
+struct Given {
+    /// wo within the measured range of azimuths.
+    wo: Direction,
+    /// What turned it there is applied to wi too.
+    signs: [f64; 2],
+    /// The azimuth from which φm is counted.
+    phi0: f64,
+    blend: Blend,
+    u: [f64; 2],
+}
+
+impl Rgl {
+    fn given(&self, wo: Direction) -> Given {
+        // Measured azimuths begin at −π: directions are turned or mirrored there.
+        let to_negative = |x: f64| if x.is_sign_negative() { 1.0 } else { -1.0 };
+        let signs = match self.fold {
+            4 => [to_negative(wo.x), to_negative(wo.y)],
+            2 => [to_negative(wo.y); 2],
+            _ => [1.0, 1.0],
+        };
+        let wo = Direction::new(wo.x * signs[0], wo.y * signs[1], wo.z);
+        let (theta, phi) = (wo.theta(), wo.phi());
+        let blend = Blend::of_two(locate(&self.phi, phi), locate(&self.theta, theta), self.theta.len());
+        let phi0 = if self.isotropic { phi } else { 0.0 };
+        Given { wo, signs, phi0, blend, u: [u_of_theta(theta), v_of_phi(phi)] }
+    }
+
+    /// wi, its microfacet normal m and (u, v) of m.
+    fn place(&self, given: &Given, wi: Direction) -> (Direction, [f64; 2]) {
+        let wi = Direction::new(wi.x * given.signs[0], wi.y * given.signs[1], wi.z);
+        let m = (wi + given.wo).normalized();
+        // φ of the normal itself has no meaning.
+        let phi = if m.x == 0.0 && m.y == 0.0 { 0.0 } else { m.phi() - given.phi0 };
+        (m, [u_of_theta(m.theta()), v_of_phi(phi)])
+    }
+
+    /// f·cos θi at the point of the square between the warps that belongs to m at
+    /// `uv`.
+    fn light(&self, given: &Given, uv: [f64; 2], point: [f64; 2]) -> Spectrum {
+        let mut value = Spectrum::zero(self.channels.len());
+        self.spectra.at(&given.blend, point, &mut value);
+        let scale = match &self.scale {
+            Some(scale) => {
+                let sigma = scale.sigma.value(&Blend::one(0), given.u);
+                scale.ndf.value(&Blend::one(0), uv) / (4.0 * sigma)
+            }
+            None => 1.0,
+        };
+        value.map(|v| (v * scale).max(0.0))
+    }
+}
+
+impl Bsdf for Rgl {
+    fn describe(&self) -> Description {
+        Description::new(self.name.clone())
+            .channels(self.channels.clone())
+            .dimensions(2)
+            .claims(|c| {
+                c.isotropic = self.isotropic;
+                // Measured and interpolated for each wo by itself.
+                c.reciprocal = false;
+            })
+            .table(Table::default())
+    }
+
+    fn eval(&self, wo: Direction, wi: Direction, _: Transport) -> Spectrum {
+        if !(wo.z > 0.0 && wi.z > 0.0) {
+            return Spectrum::zero(self.channels.len());
+        }
+        let given = self.given(wo);
+        let (_, uv) = self.place(&given, wi);
+        let (point, _) = self.vndf.invert(&given.blend, uv);
+        self.light(&given, uv, point) * (1.0 / wi.z)
+    }
+
+    fn pdf(&self, wo: Direction, wi: Direction, _: Transport) -> f64 {
+        if !(wo.z > 0.0 && wi.z > 0.0) {
+            return 0.0;
+        }
+        let given = self.given(wo);
+        let (m, uv) = self.place(&given, wi);
+        let (point, visible) = self.vndf.invert(&given.blend, uv);
+        let density = visible * self.luminance.density(&given.blend, point);
+        density / (area(uv[0], m) * 4.0 * given.wo.dot(m))
+    }
+
+    fn sample(&self, wo: Direction, u: &[f64], _: Transport) -> Option<Sample> {
+        if !(wo.z > 0.0) {
+            return None;
+        }
+        let given = self.given(wo);
+        let (point, bright) = self.luminance.sample(&given.blend, [u[0], u[1]]);
+        let (uv, visible) = self.vndf.sample(&given.blend, point);
+        let (m, area) = normal(uv, given.phi0);
+        let cosine = given.wo.dot(m);
+        let wi = given.wo.reflected(m);
+        if !(cosine > 0.0 && wi.z > 0.0) {
+            return None;
+        }
+        let pdf = bright * visible / (area * 4.0 * cosine);
+        let weight = self.light(&given, uv, point) * (1.0 / pdf);
+        let wi = Direction::new(wi.x * given.signs[0], wi.y * given.signs[1], wi.z);
+        (pdf > 0.0).then_some(Sample { wi, weight, pdf, lobe: Lobe::GLOSSY_REFLECTION })
+    }
+}
