@@ -28,7 +28,7 @@ impl HalfDifference {
     #[inline]
     pub fn new(wo: Direction, wi: Direction) -> Self {
         let (sum, difference) = (wo + wi, wi - wo);
-        let across = sum.x.hypot(sum.y);
+        let across = (sum.x * sum.x + sum.y * sum.y).sqrt();
         let theta_h = across.atan2(sum.z);
         // |wi − wo| = 2 sin θd and |wi + wo| = 2 cos θd.
         let (sin_d, cos_d) = (difference.length(), sum.length());

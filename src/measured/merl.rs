@@ -2,8 +2,9 @@
 //! data-driven reflectance model*, SIGGRAPH 2003 (the MERL database).
 
 use super::half_difference::HalfDifference;
-use super::sampler::IsotropicSampler;
-use crate::bsdf::{Bsdf, Description, Direction, Lobe, Sample, Spectrum, Table, Transport};
+use super::per_wo::Reflector;
+use super::sampler::{GivenLobe, IsotropicSampler};
+use crate::bsdf::{Description, Direction, Lobe, Sample, Spectrum, Table};
 use std::f64::consts::{FRAC_PI_2, PI};
 use std::sync::Arc;
 
@@ -145,7 +146,8 @@ impl Reach {
     }
 }
 
-/// A MERL table as a BSDF: its values, and a sampler made for them.
+/// A MERL table as a BSDF: its values, and a sampler made for them. A subject
+/// within [`PerWo`](super::PerWo).
 #[derive(Clone, Debug)]
 pub struct Merl {
     table: Arc<MerlTable>,
@@ -174,7 +176,9 @@ impl Merl {
     }
 }
 
-impl Bsdf for Merl {
+impl Reflector for Merl {
+    type Given<'a> = (Direction, GivenLobe<'a>);
+
     fn describe(&self) -> Description {
         Description::new("merl")
             .channels(["r", "g", "b"])
@@ -188,21 +192,25 @@ impl Bsdf for Merl {
             .table(Table { missing: self.table.missing })
     }
 
-    fn eval(&self, wo: Direction, wi: Direction, _: Transport) -> Spectrum {
-        if !(wo.z > 0.0 && wi.z > 0.0) {
-            return Spectrum::zero(3);
-        }
-        Spectrum::from(&self.table.value(wo, wi, self.interpolation)[..])
+    fn given(&self, wo: Direction, calls: usize) -> Self::Given<'_> {
+        (wo, self.sampler.given(wo, calls).expect("wo is on the front side"))
     }
 
-    fn pdf(&self, wo: Direction, wi: Direction, _: Transport) -> f64 {
-        self.sampler.pdf(wo, wi)
+    #[inline]
+    fn eval(&self, (wo, _): &Self::Given<'_>, wi: Direction, out: &mut [f64]) {
+        out.copy_from_slice(&self.table.value(*wo, wi, self.interpolation));
     }
 
-    fn sample(&self, wo: Direction, u: &[f64], transport: Transport) -> Option<Sample> {
-        let wi = self.sampler.sample(wo, [u[0], u[1]])?;
-        let pdf = self.sampler.pdf(wo, wi);
-        let weight = Bsdf::eval(self, wo, wi, transport) * (wi.z / pdf);
+    #[inline]
+    fn pdf(&self, (_, lobe): &Self::Given<'_>, wi: Direction) -> f64 {
+        lobe.pdf(wi)
+    }
+
+    #[inline]
+    fn sample(&self, (wo, lobe): &Self::Given<'_>, u: [f64; 2]) -> Option<Sample> {
+        let (wi, pdf) = lobe.sample(u)?;
+        let f = self.table.value(*wo, wi, self.interpolation);
+        let weight = Spectrum::from(&f[..]) * (wi.z / pdf);
         Some(Sample { wi, weight, pdf, lobe: Lobe::GLOSSY_REFLECTION })
     }
 }

@@ -6,10 +6,13 @@
 
 mod bytes;
 mod formats;
+#[cfg(test)]
+mod fuzz;
 mod half_difference;
 mod merl;
 mod merl_file;
 mod open;
+mod per_wo;
 mod rgl;
 mod rgl_bake;
 mod rgl_file;
@@ -21,9 +24,10 @@ pub use bytes::FormatError;
 pub use formats::Format;
 pub use half_difference::HalfDifference;
 pub use merl::{Interpolation, Merl, MerlTable};
+pub use per_wo::{PerWo, Reflector};
 pub use open::{ContentError, OpenError, open, read};
 pub use rgl::Rgl;
 pub use rgl_bake::Resolution;
-pub use sampler::IsotropicSampler;
+pub use sampler::{GivenLobe, IsotropicSampler};
 
 pub(crate) use open::model;

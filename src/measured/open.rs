@@ -3,6 +3,7 @@
 use super::bytes::FormatError;
 use super::formats::{Format, READ};
 use super::merl::{Interpolation, Merl, MerlTable};
+use super::per_wo::PerWo;
 use super::rgl::Rgl;
 use crate::bsdf::Subject;
 use crate::registry::Model;
@@ -69,8 +70,8 @@ pub fn read(bytes: &[u8], interpolation: Interpolation) -> Result<Arc<dyn Subjec
         return Err(ContentError::Interpolation);
     }
     Ok(match format {
-        Format::Merl => Arc::new(Merl::new(MerlTable::read(bytes)?, interpolation)),
-        Format::Tensor => Arc::new(Rgl::read(bytes)?),
+        Format::Merl => Arc::new(PerWo(Merl::new(MerlTable::read(bytes)?, interpolation))),
+        Format::Tensor => Arc::new(PerWo(Rgl::read(bytes)?)),
         Format::WindowXml => return Err(ContentError::Unread("LBNL/WINDOW BSDF XML")),
         Format::Other(name) => return Err(ContentError::Unread(name)),
         Format::Unknown => return Err(ContentError::Unknown(beginning(bytes))),

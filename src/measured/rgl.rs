@@ -2,8 +2,9 @@
 //! efficient material acquisition and rendering*, SIGGRAPH Asia 2018 (the RGL
 //! material database of EPFL).
 
-use super::warp::{Blend, Grid, Warp, locate};
-use crate::bsdf::{Bsdf, Description, Direction, Lobe, Sample, Spectrum, Table, Transport};
+use super::per_wo::Reflector;
+use super::warp::{Blend, Grid, Slice, Warp, locate};
+use crate::bsdf::{Description, Direction, Lobe, Sample, Spectrum, Table};
 use std::f64::consts::{FRAC_PI_2, PI, TAU};
 
 /// Below this, 2π² u sin θm counts as this: at the pole the map from the square
@@ -44,6 +45,9 @@ pub(super) struct Scale {
     pub sigma: Grid,
 }
 
+/// sin θm below which m is the surface normal.
+const COINCIDENT: f64 = 1e-9;
+
 /// u of a polar angle.
 pub(super) fn u_of_theta(theta: f64) -> f64 {
     (theta / FRAC_PI_2).sqrt()
@@ -68,7 +72,7 @@ pub(super) fn area(u: f64, m: Direction) -> f64 {
 }
 
 /// What depends on wo alone.
-struct Given {
+pub struct GivenSlices<'a> {
     /// wo within the measured range of azimuths.
     wo: Direction,
     /// What turned it there is applied to wi too.
@@ -76,51 +80,38 @@ struct Given {
     /// The azimuth from which φm is counted.
     phi0: f64,
     blend: Blend,
-    u: [f64; 2],
+    vndf: Slice<'a>,
+    luminance: Slice<'a>,
+    /// 1/(4 σ(wo)).
+    scale: f64,
 }
 
 impl Rgl {
-    fn given(&self, wo: Direction) -> Given {
-        // Measured azimuths begin at −π: directions are turned or mirrored there.
-        let to_negative = |x: f64| if x.is_sign_negative() { 1.0 } else { -1.0 };
-        let signs = match self.fold {
-            4 => [to_negative(wo.x), to_negative(wo.y)],
-            2 => [to_negative(wo.y); 2],
-            _ => [1.0, 1.0],
-        };
-        let wo = Direction::new(wo.x * signs[0], wo.y * signs[1], wo.z);
-        let (theta, phi) = (wo.theta(), wo.phi());
-        let blend = Blend::of_two(locate(&self.phi, phi), locate(&self.theta, theta), self.theta.len());
-        let phi0 = if self.isotropic { phi } else { 0.0 };
-        Given { wo, signs, phi0, blend, u: [u_of_theta(theta), v_of_phi(phi)] }
-    }
-
     /// wi, its microfacet normal m and (u, v) of m.
-    fn place(&self, given: &Given, wi: Direction) -> (Direction, [f64; 2]) {
+    fn place(&self, given: &GivenSlices, wi: Direction) -> (Direction, [f64; 2]) {
         let wi = Direction::new(wi.x * given.signs[0], wi.y * given.signs[1], wi.z);
         let m = (wi + given.wo).normalized();
+        let across = (m.x * m.x + m.y * m.y).sqrt();
         // φ of the normal itself has no meaning.
-        let phi = if m.x == 0.0 && m.y == 0.0 { 0.0 } else { m.phi() - given.phi0 };
-        (m, [u_of_theta(m.theta()), v_of_phi(phi)])
+        let phi = if across < COINCIDENT { 0.0 } else { m.y.atan2(m.x) - given.phi0 };
+        (m, [u_of_theta(across.atan2(m.z)), v_of_phi(phi)])
     }
 
     /// f·cos θi at the point of the square between the warps that belongs to m at
     /// `uv`.
-    fn light(&self, given: &Given, uv: [f64; 2], point: [f64; 2]) -> Spectrum {
-        let mut value = Spectrum::zero(self.channels.len());
-        self.spectra.at(&given.blend, point, &mut value);
+    fn light(&self, given: &GivenSlices, uv: [f64; 2], point: [f64; 2], out: &mut [f64]) {
+        self.spectra.at(&given.blend, point, out);
         let scale = match &self.scale {
-            Some(scale) => {
-                let sigma = scale.sigma.value(&Blend::one(0), given.u);
-                scale.ndf.value(&Blend::one(0), uv) / (4.0 * sigma)
-            }
+            Some(scale) => scale.ndf.value(&Blend::one(0), uv) * given.scale,
             None => 1.0,
         };
-        value.map(|v| (v * scale).max(0.0))
+        out.iter_mut().for_each(|v| *v = (*v * scale).max(0.0));
     }
 }
 
-impl Bsdf for Rgl {
+impl Reflector for Rgl {
+    type Given<'a> = GivenSlices<'a>;
+
     fn describe(&self) -> Description {
         Description::new(self.name.clone())
             .channels(self.channels.clone())
@@ -133,43 +124,55 @@ impl Bsdf for Rgl {
             .table(Table::default())
     }
 
-    fn eval(&self, wo: Direction, wi: Direction, _: Transport) -> Spectrum {
-        if !(wo.z > 0.0 && wi.z > 0.0) {
-            return Spectrum::zero(self.channels.len());
+    fn given(&self, wo: Direction, calls: usize) -> GivenSlices<'_> {
+        // Measured azimuths begin at −π: directions are turned or mirrored there.
+        let to_negative = |x: f64| if x.is_sign_negative() { 1.0 } else { -1.0 };
+        let signs = match self.fold {
+            4 => [to_negative(wo.x), to_negative(wo.y)],
+            2 => [to_negative(wo.y); 2],
+            _ => [1.0, 1.0],
+        };
+        let wo = Direction::new(wo.x * signs[0], wo.y * signs[1], wo.z);
+        let (theta, phi) = (wo.theta(), wo.phi());
+        let blend = Blend::of_two(locate(&self.phi, phi), locate(&self.theta, theta), self.theta.len());
+        let sigma = |scale: &Scale| scale.sigma.value(&Blend::one(0), [u_of_theta(theta), v_of_phi(phi)]);
+        GivenSlices {
+            wo,
+            signs,
+            phi0: if self.isotropic { phi } else { 0.0 },
+            blend,
+            vndf: self.vndf.slice(blend, calls),
+            luminance: self.luminance.slice(blend, calls),
+            scale: self.scale.as_ref().map_or(1.0, |s| 0.25 / sigma(s)),
         }
-        let given = self.given(wo);
-        let (_, uv) = self.place(&given, wi);
-        let (point, _) = self.vndf.invert(&given.blend, uv);
-        self.light(&given, uv, point) * (1.0 / wi.z)
     }
 
-    fn pdf(&self, wo: Direction, wi: Direction, _: Transport) -> f64 {
-        if !(wo.z > 0.0 && wi.z > 0.0) {
-            return 0.0;
-        }
-        let given = self.given(wo);
-        let (m, uv) = self.place(&given, wi);
-        let (point, visible) = self.vndf.invert(&given.blend, uv);
-        let density = visible * self.luminance.density(&given.blend, point);
-        density / (area(uv[0], m) * 4.0 * given.wo.dot(m))
+    fn eval(&self, given: &GivenSlices, wi: Direction, out: &mut [f64]) {
+        let (_, uv) = self.place(given, wi);
+        let (point, _) = given.vndf.invert(uv);
+        self.light(given, uv, point, out);
+        out.iter_mut().for_each(|v| *v /= wi.z);
     }
 
-    fn sample(&self, wo: Direction, u: &[f64], _: Transport) -> Option<Sample> {
-        if !(wo.z > 0.0) {
-            return None;
-        }
-        let given = self.given(wo);
-        let (point, bright) = self.luminance.sample(&given.blend, [u[0], u[1]]);
-        let (uv, visible) = self.vndf.sample(&given.blend, point);
+    fn pdf(&self, given: &GivenSlices, wi: Direction) -> f64 {
+        let (m, uv) = self.place(given, wi);
+        let (point, visible) = given.vndf.invert(uv);
+        visible * given.luminance.density(point) / (area(uv[0], m) * 4.0 * given.wo.dot(m))
+    }
+
+    fn sample(&self, given: &GivenSlices, u: [f64; 2]) -> Option<Sample> {
+        let (point, bright) = given.luminance.sample(u);
+        let (uv, visible) = given.vndf.sample(point);
         let (m, area) = normal(uv, given.phi0);
         let cosine = given.wo.dot(m);
         let wi = given.wo.reflected(m);
-        if !(cosine > 0.0 && wi.z > 0.0) {
+        let pdf = bright * visible / (area * 4.0 * cosine);
+        if !(cosine > 0.0 && wi.z > 0.0 && pdf > 0.0) {
             return None;
         }
-        let pdf = bright * visible / (area * 4.0 * cosine);
-        let weight = self.light(&given, uv, point) * (1.0 / pdf);
+        let mut weight = Spectrum::zero(self.channels.len());
+        self.light(given, uv, point, &mut weight);
         let wi = Direction::new(wi.x * given.signs[0], wi.y * given.signs[1], wi.z);
-        (pdf > 0.0).then_some(Sample { wi, weight, pdf, lobe: Lobe::GLOSSY_REFLECTION })
+        Some(Sample { wi, weight: weight * (1.0 / pdf), pdf, lobe: Lobe::GLOSSY_REFLECTION })
     }
 }

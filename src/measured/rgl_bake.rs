@@ -102,20 +102,21 @@ impl Rgl {
                 let area = Grid::new([PLANE, 2], 1, sigma.clone()).value(&Blend::one(0), [u, 0.5]);
                 let mut slice = vec![0.0; channels * spectra * spectra];
                 for k in 0..spectra * spectra {
-                    let (uv, density) = warp.sample(&Blend::one(0), node(k, *spectra));
-                    let (m, solid) = normal(uv, phi0);
+                    let (uv, _) = warp.slice(Blend::one(0), 1).sample(node(k, *spectra));
+                    let (m, _) = normal(uv, phi0);
                     let wi = wo.reflected(m);
-                    let cosine = wo.dot(m);
-                    let above = wi.z > 0.0 && cosine > 0.0;
+                    let above = wi.z > 0.0 && wo.dot(m) > 0.0;
                     let f = if above { value(wo, wi) * wi.z } else { Spectrum::zero(channels) };
                     let scale = d.value(&Blend::one(0), uv) / (4.0 * area);
                     for (c, f) in f.iter().enumerate() {
                         slice[c * spectra * spectra + k] = f / scale;
                     }
-                    // f·cos per unit of the square, with what the warps must not miss.
-                    let unit = if density > 0.0 { solid * 4.0 * cosine.max(0.0) / density } else { 0.0 };
-                    luminance.push((f.mean() * unit).max(1e-4));
                 }
+                // Relative to visible normals, f·cos is what the spectra are.
+                let mean = |k: usize| slice.iter().skip(k).step_by(spectra * spectra).sum::<f64>();
+                let bright: Vec<f64> = (0..spectra * spectra).map(mean).collect();
+                let least = 1e-3 * bright.iter().sum::<f64>() / bright.len() as f64;
+                luminance.extend(bright.iter().map(|v| v.max(least).max(f64::from(f32::MIN_POSITIVE))));
                 layers.extend(slice);
             }
         }

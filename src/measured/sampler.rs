@@ -1,6 +1,6 @@
 //! A sampler for isotropic reflection of which only values are known.
 
-use super::warp::{Blend, Warp, locate};
+use super::warp::{Blend, Slice, Warp, locate};
 use crate::bsdf::Direction;
 use rayon::prelude::*;
 use std::f64::consts::PI;
@@ -38,6 +38,9 @@ pub struct IsotropicSampler {
     thetas: Vec<f64>,
 }
 
+/// s below which a direction is the normal.
+const POLE: f64 = 1e-9;
+
 /// φi − φo − π in [−π, π] of w.
 fn azimuth(w: f64) -> f64 {
     PI * w * (SLOPE + (1.0 - SLOPE) * w.abs())
@@ -69,7 +72,7 @@ fn direction(s: f64, w: f64, [cos, sin]: [f64; 2]) -> Direction {
 
 /// cos and sin of the azimuth; of the tangent at the normal.
 fn azimuth_of(d: Direction) -> [f64; 2] {
-    let r = d.x.hypot(d.y);
+    let r = (d.x * d.x + d.y * d.y).sqrt();
     if r > 0.0 { [d.x / r, d.y / r] } else { [1.0, 0.0] }
 }
 
@@ -86,33 +89,51 @@ impl IsotropicSampler {
         Self { warp, thetas }
     }
 
-    fn blend(&self, wo: Direction) -> Blend {
-        Blend::between(locate(&self.thetas, wo.theta()))
+    /// What is needed for a wo on the front side, of which so many `calls` will be
+    /// made; `None` from behind.
+    pub fn given(&self, wo: Direction, calls: usize) -> Option<GivenLobe<'_>> {
+        let lobe = || {
+            let blend = Blend::between(locate(&self.thetas, wo.theta()));
+            GivenLobe { slice: self.warp.slice(blend, calls), axis: azimuth_of(wo) }
+        };
+        (wo.z > 0.0).then(lobe)
     }
+}
 
-    /// The density of [`sample`](Self::sample) in sr⁻¹; 0 unless both directions are
-    /// on the front side.
-    pub fn pdf(&self, wo: Direction, wi: Direction) -> f64 {
-        if !(wo.z > 0.0 && wi.z > 0.0) {
+/// The density of an [`IsotropicSampler`] for one wo.
+#[derive(Clone, Debug)]
+pub struct GivenLobe<'a> {
+    slice: Slice<'a>,
+    axis: [f64; 2],
+}
+
+impl GivenLobe<'_> {
+    /// The density of [`sample`](Self::sample) in sr⁻¹; 0 behind.
+    #[inline]
+    pub fn pdf(&self, wi: Direction) -> f64 {
+        if !(wi.z > 0.0) {
             return 0.0;
         }
-        // 1 − cos θ without cancellation; the density at the very normal is that
-        // beside it.
-        let s = ((wi.x * wi.x + wi.y * wi.y) / (1.0 + wi.z)).sqrt().clamp(1e-12, 1.0);
-        let [cos, sin] = azimuth_of(wo);
+        // 1 − cos θ without cancellation.
+        let s = ((wi.x * wi.x + wi.y * wi.y) / (1.0 + wi.z)).sqrt();
+        let [cos, sin] = self.axis;
         let (x, y) = (wi.x * cos + wi.y * sin, wi.y * cos - wi.x * sin);
-        let w = inverse_azimuth((-y).atan2(-x));
-        self.warp.density(&self.blend(wo), [s, 0.5 + 0.5 * w]) / area(s, w)
+        // The normal has no azimuth: its density is that towards the mirror direction.
+        let (s, w) = if s < POLE { (POLE, 0.0) } else { (s.min(1.0), inverse_azimuth((-y).atan2(-x))) };
+        self.slice.density([s, 0.5 + 0.5 * w]) / area(s, w)
     }
 
-    /// A direction from `u` in [0, 1)²; `None` from behind.
-    pub fn sample(&self, wo: Direction, u: [f64; 2]) -> Option<Direction> {
-        if !(wo.z > 0.0) {
+    /// A direction from `u` in [0, 1)², and its density.
+    #[inline]
+    pub fn sample(&self, u: [f64; 2]) -> Option<(Direction, f64)> {
+        let ([s, x], density) = self.slice.sample(u);
+        let w = 2.0 * x - 1.0;
+        let wi = direction(s, w, self.axis);
+        if !(wi.z > 0.0) {
             return None;
         }
-        let ([s, x], _) = self.warp.sample(&self.blend(wo), u);
-        let wi = direction(s, 2.0 * x - 1.0, azimuth_of(wo));
-        (wi.z > 0.0).then_some(wi)
+        let pdf = if s < POLE { self.pdf(wi) } else { density / area(s, w) };
+        Some((wi, pdf))
     }
 }
 
@@ -177,14 +198,14 @@ mod tests {
     fn density_integrates_to_one_and_is_positive() {
         let sampler = diffuse();
         for theta in [0.0, 0.5, 1.2, 1.55] {
-            let wo = Direction::from_angles(theta, 2.0);
+            let lobe = sampler.given(Direction::from_angles(theta, 2.0), usize::MAX).unwrap();
             let (n, m) = (1000, 800);
             let mut sum = 0.0;
             for i in 0..n {
                 let theta = (f64::from(i) + 0.5) / f64::from(n) * PI / 2.0;
                 for j in 0..m {
                     let wi = Direction::from_angles(theta, (f64::from(j) + 0.5) / f64::from(m) * 2.0 * PI);
-                    let p = sampler.pdf(wo, wi);
+                    let p = lobe.pdf(wi);
                     assert!(p > 0.0);
                     sum += p * theta.sin();
                 }
@@ -199,19 +220,24 @@ mod tests {
         let sampler = diffuse();
         let last = 1.0 - f64::EPSILON / 2.0;
         for wo in [Direction::NORMAL, Direction::from_angles(1.2, 0.3), Direction::new(1.0, 0.0, 1e-100)] {
+            let lobe = sampler.given(wo, 1).unwrap();
             for u in [[0.0, 0.0], [last, last], [last, 0.0], [0.0, last]] {
-                let Some(wi) = sampler.sample(wo, u) else { continue };
-                let p = sampler.pdf(wo, wi);
-                assert!(p > 0.0 && p.is_finite() && (wi.length() - 1.0).abs() < 1e-15, "{wo:?} {u:?} {p}");
+                let Some((wi, told)) = lobe.sample(u) else { continue };
+                let p = lobe.pdf(wi);
+                assert!(p > 0.0 && p.is_finite() && (told / p - 1.0).abs() < 1e-9, "{wo:?} {u:?} {p} {told}");
+                assert!((wi.length() - 1.0).abs() < 1e-15);
             }
-            assert!(sampler.pdf(wo, Direction::NORMAL).is_finite());
+            // The density at the normal does not know from where the normal is seen.
+            let turned = sampler.given(wo.rotated(1.0), 1).unwrap();
+            let [p, q] = [&lobe, &turned].map(|l| l.pdf(Direction::NORMAL));
+            assert!(p > 0.0 && (p / q - 1.0).abs() < 1e-12);
         }
-        let below = Direction::from_angles(2.0, 0.0);
-        assert!(sampler.sample(below, [0.5, 0.5]).is_none());
-        assert_eq!(sampler.pdf(Direction::NORMAL, below), 0.0);
+        assert!(sampler.given(Direction::from_angles(2.0, 0.0), 1).is_none());
+        let lobe = sampler.given(Direction::NORMAL, 1).unwrap();
+        assert_eq!(lobe.pdf(Direction::from_angles(2.0, 0.0)), 0.0);
         // A black surface is still drawn from.
         let black = IsotropicSampler::new(|_, _| 0.0);
-        let p = black.pdf(Direction::NORMAL, Direction::from_angles(0.7, 0.0));
+        let p = black.given(Direction::NORMAL, 1).unwrap().pdf(Direction::from_angles(0.7, 0.0));
         assert!((p - 0.7f64.cos() / PI).abs() < 1e-3);
     }
 }

@@ -238,7 +238,7 @@ mod tests {
         for (found, parts) in [
             (broken(0, b'T'), "tensor file, byte 0: it does not begin"),
             (broken(12, 2), "byte 12: version 2.0 is not known"),
-            (broken(14, 2), "the file ends where the name of field 1"),
+            (broken(14, 2), "byte 45: `` has the unknown type 0"),
             (broken(24, 12), "byte 24: `ab` has the unknown type 12"),
             (broken(33, 3), "`ab`, f32 of shape [3] from byte 41 on, goes beyond the end of the file at 49"),
             (broken(40, 255), "goes beyond the end"),

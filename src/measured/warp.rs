@@ -1,53 +1,52 @@
 //! Functions on the unit square that are bilinear between nodes, and densities
 //! of that kind that can be drawn from.
 
+use std::borrow::Cow;
+
 /// A weighted sum of slices, between which a function is interpolated linearly
 /// in up to two parameters.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct Blend {
     terms: [(usize, f64); 4],
+    count: usize,
 }
 
 impl Blend {
     /// One slice alone.
     pub fn one(slice: usize) -> Self {
-        Self { terms: [(slice, 1.0), (slice, 0.0), (slice, 0.0), (slice, 0.0)] }
+        Self { terms: [(slice, 1.0); 4], count: 1 }
     }
 
-    /// Between slices `k` and `k + 1`, `t` in [0, 1] of the way.
-    pub fn between((k, t): (usize, f64)) -> Self {
-        Self { terms: [(k, 1.0 - t), (k + usize::from(t > 0.0), t), (k, 0.0), (k, 0.0)] }
+    /// Between slices `k` and `k + 1`, `t` in [0, 1) of the way.
+    pub fn between(at: (usize, f64)) -> Self {
+        Self::of_two((0, 0.0), at, 1)
     }
 
     /// Between slices of two parameters, the second of which has `inner` values
     /// and runs fastest.
     pub fn of_two((i, s): (usize, f64), (j, t): (usize, f64), inner: usize) -> Self {
-        let (i1, j1) = (i + usize::from(s > 0.0), j + usize::from(t > 0.0));
-        Self {
-            terms: [
-                (i * inner + j, (1.0 - s) * (1.0 - t)),
-                (i * inner + j1, (1.0 - s) * t),
-                (i1 * inner + j, s * (1.0 - t)),
-                (i1 * inner + j1, s * t),
-            ],
+        let mut blend = Self { terms: [(0, 0.0); 4], count: 0 };
+        for (i, a) in [(i, 1.0 - s), (i + 1, s)] {
+            for (j, b) in [(j, 1.0 - t), (j + 1, t)] {
+                if a * b > 0.0 {
+                    blend.terms[blend.count] = (i * inner + j, a * b);
+                    blend.count += 1;
+                }
+            }
         }
+        blend
     }
 
     /// The sum over slices of weight times `value` of the slice.
     #[inline]
     fn sum(&self, value: impl Fn(usize) -> f64) -> f64 {
-        let mut sum = 0.0;
-        for (slice, weight) in self.terms {
-            if weight != 0.0 {
-                sum += weight * value(slice);
-            }
-        }
-        sum
+        self.terms().map(|(slice, weight)| weight * value(slice)).sum()
     }
 
     /// Its slices with their weights.
+    #[inline]
     pub fn terms(&self) -> impl Iterator<Item = (usize, f64)> {
-        self.terms.into_iter().filter(|(_, weight)| *weight != 0.0)
+        self.terms.into_iter().take(self.count)
     }
 }
 
@@ -192,6 +191,30 @@ impl Warp {
         Ok(Self { nx, ny, density, conditional, marginal })
     }
 
+    /// The blended density. Where so many `calls` are to come that blending its
+    /// tables once is cheaper, that is done.
+    pub fn slice(&self, blend: Blend, calls: usize) -> Slice<'_> {
+        if blend.count == 1 || 16 * calls < self.nx * self.ny {
+            return Slice { warp: Cow::Borrowed(self), blend };
+        }
+        let blended = |values: &[f64], size: usize| {
+            let mut sum = vec![0.0; size];
+            for (slice, weight) in blend.terms() {
+                let values = &values[slice * size..(slice + 1) * size];
+                sum.iter_mut().zip(values).for_each(|(sum, v)| *sum += weight * v);
+            }
+            sum
+        };
+        let warp = Self {
+            nx: self.nx,
+            ny: self.ny,
+            density: blended(&self.density, self.nx * self.ny),
+            conditional: blended(&self.conditional, self.nx * self.ny),
+            marginal: blended(&self.marginal, self.ny),
+        };
+        Slice { warp: Cow::Owned(warp), blend: Blend::one(0) }
+    }
+
     #[inline]
     fn node(&self, blend: &Blend, values: &[f64], i: usize, j: usize) -> f64 {
         blend.sum(|slice| values[(slice * self.ny + j) * self.nx + i])
@@ -212,22 +235,22 @@ impl Warp {
         })
     }
 
-    /// The density at a point.
-    pub fn density(&self, blend: &Blend, [x, y]: [f64; 2]) -> f64 {
+    fn density(&self, blend: &Blend, [x, y]: [f64; 2]) -> f64 {
         let (i, s) = patch(self.nx, x);
         let [a, b] = self.ends(blend, i, patch(self.ny, y));
         (1.0 - s) * a + s * b
     }
 
-    /// The point that `u` in [0, 1)² leads to, and the density there.
-    pub fn sample(&self, blend: &Blend, [ux, uy]: [f64; 2]) -> ([f64; 2], f64) {
+    fn sample(&self, blend: &Blend, [ux, uy]: [f64; 2]) -> ([f64; 2], f64) {
         let before = |j: usize| blend.sum(|slice| self.marginal[slice * self.ny + j]);
         let j = interval(self.ny, uy, before);
         let (r0, r1) = (self.row(blend, j), self.row(blend, j + 1));
         let steps_y = (self.ny - 1) as f64;
         let t = part(r0, r1, (uy - before(j)) * steps_y);
-        let mixed = |at: &dyn Fn(usize) -> f64| (1.0 - t) * at(j) + t * at(j + 1);
-        let before = |i: usize| mixed(&|j| self.node(blend, &self.conditional, i, j));
+        let before = |i: usize| {
+            let at = |j| self.node(blend, &self.conditional, i, j);
+            (1.0 - t) * at(j) + t * at(j + 1)
+        };
         let target = ux * ((1.0 - t) * r0 + t * r1);
         let i = interval(self.nx, target, before);
         let [a, b] = self.ends(blend, i, (j, t));
@@ -236,8 +259,7 @@ impl Warp {
         ([(i as f64 + s) / steps_x, (j as f64 + t) / steps_y], (1.0 - s) * a + s * b)
     }
 
-    /// The `u` that leads to a point, and the density there.
-    pub fn invert(&self, blend: &Blend, [x, y]: [f64; 2]) -> ([f64; 2], f64) {
+    fn invert(&self, blend: &Blend, [x, y]: [f64; 2]) -> ([f64; 2], f64) {
         let ((i, s), (j, t)) = (patch(self.nx, x), patch(self.ny, y));
         let (r0, r1) = (self.row(blend, j), self.row(blend, j + 1));
         let below = blend.sum(|slice| self.marginal[slice * self.ny + j]);
@@ -248,6 +270,33 @@ impl Warp {
         let whole = (1.0 - t) * r0 + t * r1;
         let ux = if whole > 0.0 { (left + mass(a, b, s) / (self.nx - 1) as f64) / whole } else { 0.5 };
         ([ux.min(1.0), uy.min(1.0)], (1.0 - s) * a + s * b)
+    }
+}
+
+/// A density of a [`Warp`], blended of some of its slices.
+#[derive(Clone, Debug)]
+pub struct Slice<'a> {
+    warp: Cow<'a, Warp>,
+    blend: Blend,
+}
+
+impl Slice<'_> {
+    /// The density at a point.
+    #[inline]
+    pub fn density(&self, point: [f64; 2]) -> f64 {
+        self.warp.density(&self.blend, point)
+    }
+
+    /// The point that `u` in [0, 1)² leads to, and the density there.
+    #[inline]
+    pub fn sample(&self, u: [f64; 2]) -> ([f64; 2], f64) {
+        self.warp.sample(&self.blend, u)
+    }
+
+    /// The `u` that leads to a point, and the density there.
+    #[inline]
+    pub fn invert(&self, point: [f64; 2]) -> ([f64; 2], f64) {
+        self.warp.invert(&self.blend, point)
     }
 }
 
@@ -282,10 +331,14 @@ mod tests {
             u in [0.0..1.0f64, 0.0..1.0f64],
             t in 0.0..1.0f64,
         ) {
-            let (warp, blend) = (two_slices(&seed), Blend::between((0, t)));
-            let (point, p) = warp.sample(&blend, u);
-            let (back, q) = warp.invert(&blend, point);
-            prop_assert!((p / q - 1.0).abs() < 1e-9 && (warp.density(&blend, point) / q - 1.0).abs() < 1e-9);
+            let warp = two_slices(&seed);
+            let slice = warp.slice(Blend::between((0, t)), 0);
+            let (point, p) = slice.sample(u);
+            let (back, q) = slice.invert(point);
+            prop_assert!((p / q - 1.0).abs() < 1e-9 && (slice.density(point) / q - 1.0).abs() < 1e-9);
+            // Blending the tables first is the same.
+            let (other, r) = warp.slice(Blend::between((0, t)), 1000).sample(u);
+            prop_assert!((p / r - 1.0).abs() < 1e-9 && (0..2).all(|k| (point[k] - other[k]).abs() < 1e-9));
             prop_assert!((back[0] - u[0]).abs() < 1e-9 && (back[1] - u[1]).abs() < 1e-9, "{u:?} {back:?}");
         }
     }
@@ -297,15 +350,16 @@ mod tests {
         let mut seed: Vec<f64> = (0..40).map(|k| (f64::from(k) * 0.618).fract()).collect();
         // Patches and rows of zeros must not be drawn.
         seed[..8].fill(0.0);
-        let (warp, blend) = (two_slices(&seed), Blend::between((0, 0.25)));
+        let warp = two_slices(&seed);
+        let slice = warp.slice(Blend::between((0, 0.25)), 1000);
         let n = 400;
         let (mut mass, mut found) = ([0.0; 4], [0.0; 4]);
         for k in 0..n * n {
             let at = [k % n, k / n].map(|i| (f64::from(i) + 0.5) / f64::from(n));
             let quarter = |[x, y]: [f64; 2]| usize::from(x > 0.5) + 2 * usize::from(y > 0.5);
             let share = 1.0 / f64::from(n * n);
-            mass[quarter(at)] += warp.density(&blend, at) * share;
-            let (point, p) = warp.sample(&blend, at);
+            mass[quarter(at)] += slice.density(at) * share;
+            let (point, p) = slice.sample(at);
             assert!(p > 0.0);
             found[quarter(point)] += share;
         }
@@ -320,7 +374,7 @@ mod tests {
         let warp = two_slices(&[1.0; 40]);
         let last = 1.0 - f64::EPSILON / 2.0;
         for u in [[0.0, 0.0], [last, last], [0.0, last]] {
-            let (point, p) = warp.sample(&Blend::one(1), u);
+            let (point, p) = warp.slice(Blend::one(1), 1).sample(u);
             assert!((p - 1.0).abs() < 1e-12 && (0..2).all(|k| (point[k] - u[k]).abs() < 1e-12));
         }
         assert_eq!(Warp::new([2, 2], vec![1.0, 1.0, 1.0, 1.0, 0.0, 0.0, 0.0, 0.0]).unwrap_err(), 1);
