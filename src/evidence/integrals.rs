@@ -100,6 +100,7 @@ impl Integrals {
         evaluations: u64,
     ) -> Result<Self, Halt> {
         let channels = meter.channels();
+        let tabulated = meter.description.table.is_some();
         let markers = markers(meter, setup, partition)?;
         let goal = Goal {
             // pdf; f·cos and its square over pdf per channel; lost; two ratios.
@@ -107,9 +108,11 @@ impl Integrals {
             controlled: channels,
             draws,
             mass: 1e-5,
-            value: 2e-5,
+            // Steps of a table between patches cost a multiple; what remains is
+            // accounted for where totals are compared.
+            value: if tabulated { 1e-4 } else { 2e-5 },
             evaluations,
-            independent: meter.description.table.is_some(),
+            independent: tabulated,
         };
         let cosine = CosineDensity::new(setup);
         let mut value = Vec::new();

@@ -15,6 +15,10 @@ pub const DIMENSIONS: [usize; 3] = [90, 90, 180];
 /// database's own reader has it.
 pub const SCALE: [f64; 3] = [1.0 / 1500.0, 1.15 / 1500.0, 1.66 / 1500.0];
 
+/// Cells begin this part of a cell early, so that rounding does not choose between
+/// two where directions of whole degrees lie on an edge.
+const EDGE: f64 = 1e-9;
+
 /// How a table is read between the centres of its cells.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub enum Interpolation {
@@ -81,7 +85,7 @@ impl MerlTable {
         let k = angles.phi_d / PI * p as f64;
         match interpolation {
             Interpolation::Nearest => {
-                let cell = |at: f64, count: usize| (at as usize).min(count - 1);
+                let cell = |at: f64, count: usize| ((at + EDGE) as usize).min(count - 1);
                 self.values[(cell(i, h) * d + cell(j, d)) * p + cell(k, p)]
             }
             Interpolation::Linear => self.linear([i, j, k]),
@@ -160,8 +164,7 @@ impl Merl {
     /// is read.
     pub fn new(table: MerlTable, interpolation: Interpolation) -> Self {
         let mean = |v: [f64; 3]| (v[0] + v[1] + v[2]) / 3.0;
-        let sampler =
-            IsotropicSampler::new(|wo, wi| mean(table.value(wo, wi, Interpolation::Linear)));
+        let sampler = IsotropicSampler::new(|wo, wi| mean(table.value(wo, wi, Interpolation::Linear)));
         Self { table: Arc::new(table), sampler: Arc::new(sampler), interpolation }
     }
 

@@ -72,8 +72,13 @@ impl MerlTable {
         };
         for (c, plane) in data.chunks_exact(cells * 8).enumerate() {
             let stored = plane.par_chunks_exact(8);
-            let first =
-                values.par_iter_mut().zip(stored).enumerate().with_min_len(1 << 14).filter_map(wrong(c)).min_by_key(|(k, _)| *k);
+            let first = values
+                .par_iter_mut()
+                .zip(stored)
+                .enumerate()
+                .with_min_len(1 << 14)
+                .filter_map(wrong(c))
+                .min_by_key(|(k, _)| *k);
             if let Some((k, v)) = first {
                 let message = format!(
                     "the value of channel {} at θh cell {}, θd cell {}, φd cell {} is {v}; it must be a \

@@ -91,13 +91,17 @@ fn beginning(bytes: &[u8]) -> String {
 
 /// The registered model `measured`.
 pub(crate) fn model() -> Model {
-    Model::dynamic("measured", "a measured file: MERL .binary or RGL tensor .bsdf, told by its content", |p| {
-        let interpolation = match p.text("interpolation") {
-            "nearest" => Interpolation::Nearest,
-            _ => Interpolation::Linear,
-        };
-        open(Path::new(p.text("file")), interpolation).map_err(|e| e.to_string())
-    })
+    Model::dynamic(
+        "measured",
+        "a measured file: MERL .binary or RGL tensor .bsdf, told by its content",
+        |p| {
+            let interpolation = match p.text("interpolation") {
+                "nearest" => Interpolation::Nearest,
+                _ => Interpolation::Linear,
+            };
+            open(Path::new(p.text("file")), interpolation).map_err(|e| e.to_string())
+        },
+    )
     .file("file", "the path of the measured file")
     .choice("interpolation", &["linear", "nearest"], "how a MERL table is read between its nodes")
     .idle()

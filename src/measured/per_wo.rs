@@ -12,7 +12,7 @@ pub trait Reflector: Send + Sync {
 
     /// Name, channels, claims; `dimensions` must be 2.
     fn describe(&self) -> Description;
-    /// For a wo with z > 0, of which so many `calls` will be made.
+    /// For a wo with z > 0, whose density so many `calls` will ask for.
     fn given(&self, wo: Direction, calls: usize) -> Self::Given<'_>;
     /// f in sr⁻¹ per channel into `out`, for a wi with z > 0.
     fn eval(&self, given: &Self::Given<'_>, wi: Direction, out: &mut [f64]);
@@ -40,7 +40,7 @@ impl<T: Reflector> Subject for PerWo<T> {
     ) -> Result<(), SubjectError> {
         out.fill(0.0);
         if wo.z > 0.0 && !wi.is_empty() {
-            let given = self.0.given(wo, wi.len());
+            let given = self.0.given(wo, 0);
             let channels = out.len() / wi.len();
             for (wi, row) in wi.iter().zip(out.chunks_exact_mut(channels)).filter(|(wi, _)| wi.z > 0.0) {
                 self.0.eval(&given, *wi, row);
@@ -66,13 +66,7 @@ impl<T: Reflector> Subject for PerWo<T> {
         Ok(())
     }
 
-    fn sample(
-        &self,
-        wo: Direction,
-        u: &[f64],
-        _: Transport,
-        out: &mut Samples,
-    ) -> Result<(), SubjectError> {
+    fn sample(&self, wo: Direction, u: &[f64], _: Transport, out: &mut Samples) -> Result<(), SubjectError> {
         let rows = u.chunks_exact(2);
         if wo.z > 0.0 {
             let given = self.0.given(wo, rows.len());

@@ -63,11 +63,7 @@ fn direction(s: f64, w: f64, [cos, sin]: [f64; 2]) -> Direction {
     let (x, y) = (-cos_w, -sin_w);
     // cos θ = 1 − s², so sin θ = s √(2 − s²).
     let sin_theta = s * (2.0 - s * s).sqrt();
-    Direction::new(
-        sin_theta * (x * cos - y * sin),
-        sin_theta * (x * sin + y * cos),
-        (1.0 - s) * (1.0 + s),
-    )
+    Direction::new(sin_theta * (x * cos - y * sin), sin_theta * (x * sin + y * cos), (1.0 - s) * (1.0 + s))
 }
 
 /// cos and sin of the azimuth; of the tangent at the normal.
@@ -82,15 +78,14 @@ impl IsotropicSampler {
     /// counts as 0.
     pub fn new(value: impl Fn(Direction, Direction) -> f64 + Sync) -> Self {
         let step = 90.0 / STEPS as f64;
-        let thetas: Vec<f64> =
-            (0..=STEPS).map(|k| (k as f64 * step).min(GRAZING).to_radians()).collect();
+        let thetas: Vec<f64> = (0..=STEPS).map(|k| (k as f64 * step).min(GRAZING).to_radians()).collect();
         let slices: Vec<Vec<f64>> = thetas.par_iter().map(|theta| slice(*theta, &value)).collect();
         let warp = Warp::new([NODES; 2], slices.concat()).expect("the floor is positive");
         Self { warp, thetas }
     }
 
-    /// What is needed for a wo on the front side, of which so many `calls` will be
-    /// made; `None` from behind.
+    /// The density for a wo on the front side, which so many `calls` will ask for;
+    /// `None` from behind.
     pub fn given(&self, wo: Direction, calls: usize) -> Option<GivenLobe<'_>> {
         let lobe = || {
             let blend = Blend::between(locate(&self.thetas, wo.theta()));

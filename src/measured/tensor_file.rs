@@ -68,7 +68,11 @@ impl<'a> TensorFile<'a> {
         let version = [cursor.u8("the version")?, cursor.u8("the version")?];
         if version != VERSION {
             let [major, minor] = version;
-            return Err(FormatError::new(NAME, at, format!("version {major}.{minor} is not known, only 1.0")));
+            return Err(FormatError::new(
+                NAME,
+                at,
+                format!("version {major}.{minor} is not known, only 1.0"),
+            ));
         }
         let count = cursor.u32("the number of fields")?;
         let mut fields: Vec<Field> = Vec::new();
@@ -175,7 +179,8 @@ pub enum Content {
 /// # Panics
 /// If values do not fill a shape.
 pub fn write(fields: &[(&str, Vec<usize>, Content)]) -> Vec<u8> {
-    let head: usize = fields.iter().map(|(name, shape, _)| 2 + name.len() + 2 + 1 + 8 + 8 * shape.len()).sum();
+    let head: usize =
+        fields.iter().map(|(name, shape, _)| 2 + name.len() + 2 + 1 + 8 + 8 * shape.len()).sum();
     let mut bytes = MAGIC.to_vec();
     bytes.extend(VERSION);
     bytes.extend((fields.len() as u32).to_le_bytes());

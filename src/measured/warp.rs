@@ -38,15 +38,20 @@ impl Blend {
     }
 
     /// The sum over slices of weight times `value` of the slice.
-    #[inline]
+    #[inline(always)]
     fn sum(&self, value: impl Fn(usize) -> f64) -> f64 {
-        self.terms().map(|(slice, weight)| weight * value(slice)).sum()
+        let (slice, weight) = self.terms[0];
+        let mut sum = weight * value(slice);
+        for (slice, weight) in &self.terms[1..self.count] {
+            sum += weight * value(*slice);
+        }
+        sum
     }
 
     /// Its slices with their weights.
-    #[inline]
-    pub fn terms(&self) -> impl Iterator<Item = (usize, f64)> {
-        self.terms.into_iter().take(self.count)
+    #[inline(always)]
+    pub fn terms(&self) -> &[(usize, f64)] {
+        &self.terms[..self.count]
     }
 }
 
@@ -97,10 +102,11 @@ impl Grid {
     }
 
     /// The components at a point of the square into `out`.
+    #[inline]
     pub fn at(&self, blend: &Blend, [x, y]: [f64; 2], out: &mut [f64]) {
         let ((i, s), (j, t)) = (patch(self.nx, x), patch(self.ny, y));
         out.fill(0.0);
-        for (slice, weight) in blend.terms() {
+        for &(slice, weight) in blend.terms() {
             let row = (slice * self.ny + j) * self.nx + i;
             for (node, share) in [
                 (row, (1.0 - s) * (1.0 - t)),
@@ -194,12 +200,12 @@ impl Warp {
     /// The blended density. Where so many `calls` are to come that blending its
     /// tables once is cheaper, that is done.
     pub fn slice(&self, blend: Blend, calls: usize) -> Slice<'_> {
-        if blend.count == 1 || 16 * calls < self.nx * self.ny {
+        if blend.count == 1 || 8 * calls < self.nx * self.ny {
             return Slice { warp: Cow::Borrowed(self), blend };
         }
         let blended = |values: &[f64], size: usize| {
             let mut sum = vec![0.0; size];
-            for (slice, weight) in blend.terms() {
+            for &(slice, weight) in blend.terms() {
                 let values = &values[slice * size..(slice + 1) * size];
                 sum.iter_mut().zip(values).for_each(|(sum, v)| *sum += weight * v);
             }

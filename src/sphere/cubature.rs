@@ -355,8 +355,9 @@ fn to_split(
         mass[patch.leaf as usize] += values[k * n];
         add(&mut mass_error[patch.leaf as usize], errors[k * n]);
     }
-    let combined =
-        |sums: Vec<(f64, f64)>| -> Vec<f64> { sums.iter().map(|(sum, squares)| goal.sum_of(*sum, *squares)).collect() };
+    let combined = |sums: Vec<(f64, f64)>| -> Vec<f64> {
+        sums.iter().map(|(sum, squares)| goal.sum_of(*sum, *squares)).collect()
+    };
     let (total_error, mass_error) = (combined(total_error), combined(mass_error));
     // An error below rounding of the whole cannot be reduced.
     let allowed = |c: usize| {

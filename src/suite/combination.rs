@@ -120,7 +120,8 @@ impl Combinations {
 /// Where the file of a combination is written.
 fn place_of(entry: &Entry, spelling: &Spelling) -> Range<usize> {
     let holds = |(name, values): &(Spanned<String>, Vec<Spanned<Value>>)| {
-        let given = spelling.parameters.iter().find(|(n, v)| n == name.get_ref() && matches!(v, Value::Text(_)))?;
+        let given =
+            spelling.parameters.iter().find(|(n, v)| n == name.get_ref() && matches!(v, Value::Text(_)))?;
         values.iter().find(|v| name.get_ref() == "file" && v.get_ref() == &given.1).map(Spanned::span)
     };
     entry.parameters.iter().find_map(holds).unwrap_or(entry.model.span())

@@ -298,7 +298,8 @@ impl SuiteFile {
             reader.note(Mistake::new(item.span(), "a [[subject]] without `use`", "what is it?").help(help));
         }
         // Files that are not there were told already.
-        let lacks_file = |(name, values): &(Spanned<String>, Vec<_>)| name.get_ref() == "file" && values.is_empty();
+        let lacks_file =
+            |(name, values): &(Spanned<String>, Vec<_>)| name.get_ref() == "file" && values.is_empty();
         if let Some(model) = model.filter(|_| !entry.parameters.iter().any(lacks_file)) {
             self.entries.push(Entry { model, ..entry });
         }
