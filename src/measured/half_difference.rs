@@ -66,7 +66,7 @@ mod tests {
     proptest! {
         #[test]
         fn pairs_have_their_coordinates(
-            theta_h in 1e-6..1.5f64, theta_d in 1e-6..1.5f64, phi_d in 1e-6..3.14f64, turn in -3.0..3.0f64,
+            theta_h in 1e-6..1.5f64, theta_d in 1e-6..1.5f64, phi_d in 1e-6..3.1f64, turn in -3.0..3.0f64,
         ) {
             let [wo, wi] = HalfDifference { theta_h, theta_d, phi_d }.pair();
             prop_assert!((wo.length() - 1.0).abs() < 1e-15 * 8.0);

@@ -59,16 +59,16 @@ pub(super) fn v_of_phi(phi: f64) -> f64 {
     v - v.floor()
 }
 
-/// The microfacet normal at (u, v), its polar angle's sine, and the solid angle
-/// of a unit of area there: dω = 2π² u sin θm du dv.
+/// The microfacet normal at (u, v), and the solid angle of a unit of area there.
 pub(super) fn normal([u, v]: [f64; 2], phi0: f64) -> (Direction, f64) {
-    let m = Direction::from_angles(u * u * FRAC_PI_2, TAU * v - PI + phi0);
-    (m, area(u, m))
+    let (sin, cos) = (u * u * FRAC_PI_2).sin_cos();
+    let (sin_phi, cos_phi) = (TAU * v - PI + phi0).sin_cos();
+    (Direction::new(sin * cos_phi, sin * sin_phi, cos), area(u, sin))
 }
 
-/// 2π² u sin θm, see [`SMALLEST_AREA`].
-pub(super) fn area(u: f64, m: Direction) -> f64 {
-    (2.0 * PI * PI * u * m.x.hypot(m.y)).max(SMALLEST_AREA)
+/// dω = 2π² u sin θm du dv, see [`SMALLEST_AREA`].
+fn area(u: f64, sin_theta: f64) -> f64 {
+    (2.0 * PI * PI * u * sin_theta).max(SMALLEST_AREA)
 }
 
 /// What depends on wo alone.
@@ -87,14 +87,14 @@ pub struct GivenSlices<'a> {
 }
 
 impl Rgl {
-    /// wi, its microfacet normal m and (u, v) of m.
-    fn place(&self, given: &GivenSlices, wi: Direction) -> (Direction, [f64; 2]) {
+    /// (u, v) of the microfacet normal m of wi, sin θm and wo·m.
+    fn place(&self, given: &GivenSlices, wi: Direction) -> ([f64; 2], f64, f64) {
         let wi = Direction::new(wi.x * given.signs[0], wi.y * given.signs[1], wi.z);
         let m = (wi + given.wo).normalized();
         let across = (m.x * m.x + m.y * m.y).sqrt();
         // φ of the normal itself has no meaning.
         let phi = if across < COINCIDENT { 0.0 } else { m.y.atan2(m.x) - given.phi0 };
-        (m, [u_of_theta(across.atan2(m.z)), v_of_phi(phi)])
+        ([u_of_theta(across.atan2(m.z)), v_of_phi(phi)], across, given.wo.dot(m))
     }
 
     /// f·cos θi at the point of the square between the warps that belongs to m at
@@ -148,16 +148,16 @@ impl Reflector for Rgl {
     }
 
     fn eval(&self, given: &GivenSlices, wi: Direction, out: &mut [f64]) {
-        let (_, uv) = self.place(given, wi);
+        let (uv, ..) = self.place(given, wi);
         let (point, _) = given.vndf.invert(uv);
         self.light(given, uv, point, out);
         out.iter_mut().for_each(|v| *v /= wi.z);
     }
 
     fn pdf(&self, given: &GivenSlices, wi: Direction) -> f64 {
-        let (m, uv) = self.place(given, wi);
+        let (uv, sin_theta, cosine) = self.place(given, wi);
         let (point, visible) = given.vndf.invert(uv);
-        visible * given.luminance.density(point) / (area(uv[0], m) * 4.0 * given.wo.dot(m))
+        visible * given.luminance.density(point) / (area(uv[0], sin_theta) * 4.0 * cosine)
     }
 
     fn sample(&self, given: &GivenSlices, u: [f64; 2]) -> Option<Sample> {
