@@ -2,7 +2,8 @@
 //! between them.
 
 use crate::bsdf::Direction;
-use std::f64::consts::PI;
+use crate::sphere::octants;
+use std::f64::consts::{FRAC_PI_2, FRAC_PI_4, PI};
 
 /// θh, θd and φd of S. Rusinkiewicz, *A new change of variables for efficient
 /// BRDF representation*, 1998: the polar angle of the half vector h, and the
@@ -23,16 +24,23 @@ pub struct HalfDifference {
 /// not just below π. Rounding is 1e-16, and nothing measured resolves 1e-9.
 const COINCIDENT: f64 = 1e-9;
 
+/// The angle in [0, π/2] whose tangent is y/x, of numbers that are not negative: as
+/// y.atan2(x), in a quarter of the time.
+#[inline]
+pub(super) fn angle(y: f64, x: f64) -> f64 {
+    if y <= x { FRAC_PI_4 * octants(y, x) } else { FRAC_PI_2 - FRAC_PI_4 * octants(x, y) }
+}
+
 impl HalfDifference {
     /// Of directions on the front side. Exchanging them gives the same bits.
     #[inline]
     pub fn new(wo: Direction, wi: Direction) -> Self {
         let (sum, difference) = (wo + wi, wi - wo);
         let across = (sum.x * sum.x + sum.y * sum.y).sqrt();
-        let theta_h = across.atan2(sum.z);
+        let theta_h = angle(across, sum.z);
         // |wi − wo| = 2 sin θd and |wi + wo| = 2 cos θd.
         let (sin_d, cos_d) = (difference.length(), sum.length());
-        let theta_d = sin_d.atan2(cos_d);
+        let theta_d = angle(sin_d, cos_d);
         if across <= COINCIDENT * cos_d {
             return Self { theta_h, theta_d, phi_d: 0.0 };
         }
@@ -42,7 +50,11 @@ impl HalfDifference {
         let y = difference.y * cos_phi - difference.x * sin_phi;
         let x = (along * sum.z - difference.z * across) / cos_d;
         let (x, y) = if y < 0.0 { (-x, -y) } else { (x, y) };
-        let phi_d = if y <= COINCIDENT * sin_d { 0.0 } else { y.atan2(x) };
+        let phi_d = match x {
+            _ if y <= COINCIDENT * sin_d => 0.0,
+            0.0.. => angle(y, x),
+            _ => PI - angle(y, -x),
+        };
         Self { theta_h, theta_d, phi_d }
     }
 

@@ -2,6 +2,7 @@
 //! efficient material acquisition and rendering*, SIGGRAPH Asia 2018 (the RGL
 //! material database of EPFL).
 
+use super::half_difference::angle;
 use super::per_wo::Reflector;
 use super::warp::{Blend, Grid, Slice, Warp, locate};
 use crate::bsdf::{Description, Direction, Lobe, Sample, Spectrum, Table};
@@ -94,7 +95,7 @@ impl Rgl {
         let across = (m.x * m.x + m.y * m.y).sqrt();
         // φ of the normal itself has no meaning.
         let phi = if across < COINCIDENT { 0.0 } else { m.y.atan2(m.x) - given.phi0 };
-        ([u_of_theta(across.atan2(m.z)), v_of_phi(phi)], across, given.wo.dot(m))
+        ([u_of_theta(angle(across, m.z)), v_of_phi(phi)], across, given.wo.dot(m))
     }
 
     /// f·cos θi at the point of the square between the warps that belongs to m at
@@ -102,7 +103,7 @@ impl Rgl {
     fn light(&self, given: &GivenSlices, uv: [f64; 2], point: [f64; 2], out: &mut [f64]) {
         self.spectra.at(&given.blend, point, out);
         let scale = match &self.scale {
-            Some(scale) => scale.ndf.value(&Blend::one(0), uv) * given.scale,
+            Some(scale) => scale.ndf.value(0, uv) * given.scale,
             None => 1.0,
         };
         out.iter_mut().for_each(|v| *v = (*v * scale).max(0.0));
@@ -135,7 +136,7 @@ impl Reflector for Rgl {
         let wo = Direction::new(wo.x * signs[0], wo.y * signs[1], wo.z);
         let (theta, phi) = (wo.theta(), wo.phi());
         let blend = Blend::of_two(locate(&self.phi, phi), locate(&self.theta, theta), self.theta.len());
-        let sigma = |scale: &Scale| scale.sigma.value(&Blend::one(0), [u_of_theta(theta), v_of_phi(phi)]);
+        let sigma = |scale: &Scale| scale.sigma.value(0, [u_of_theta(theta), v_of_phi(phi)]);
         GivenSlices {
             wo,
             signs,

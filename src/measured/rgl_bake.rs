@@ -92,14 +92,14 @@ impl Rgl {
                         let uv = node(k, *normals);
                         let (m, _) = normal(uv, phi0);
                         let area = TAU * PI * uv[0] * m.x.hypot(m.y);
-                        rounded(d.value(&Blend::one(0), uv) * wo.dot(m).max(0.0) * area)
+                        rounded(d.value(0, uv) * wo.dot(m).max(0.0) * area)
                     })
                     .collect();
                 let warp = Warp::new([*normals; 2], visible.clone()).expect("some normals are visible");
                 vndf.extend(visible);
                 // What the reader will multiply by, so that nodes are met.
                 let u = (theta / FRAC_PI_2).sqrt();
-                let area = Grid::new([PLANE, 2], 1, sigma.clone()).value(&Blend::one(0), [u, 0.5]);
+                let area = Grid::new([PLANE, 2], 1, sigma.clone()).value(0, [u, 0.5]);
                 let mut slice = vec![0.0; channels * spectra * spectra];
                 for k in 0..spectra * spectra {
                     let (uv, _) = warp.slice(Blend::one(0), 1).sample(node(k, *spectra));
@@ -107,7 +107,7 @@ impl Rgl {
                     let wi = wo.reflected(m);
                     let above = wi.z > 0.0 && wo.dot(m) > 0.0;
                     let f = if above { value(wo, wi) * wi.z } else { Spectrum::zero(channels) };
-                    let scale = d.value(&Blend::one(0), uv) / (4.0 * area);
+                    let scale = d.value(0, uv) / (4.0 * area);
                     for (c, f) in f.iter().enumerate() {
                         slice[c * spectra * spectra + k] = f / scale;
                     }

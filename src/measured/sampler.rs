@@ -1,5 +1,6 @@
 //! A sampler for isotropic reflection of which only values are known.
 
+use super::half_difference::angle;
 use super::warp::{Blend, Slice, Warp, locate};
 use crate::bsdf::Direction;
 use rayon::prelude::*;
@@ -44,6 +45,12 @@ const POLE: f64 = 1e-9;
 /// φi − φo − π in [−π, π] of w.
 fn azimuth(w: f64) -> f64 {
     PI * w * (SLOPE + (1.0 - SLOPE) * w.abs())
+}
+
+/// y.atan2(x).
+fn turn(y: f64, x: f64) -> f64 {
+    let first = angle(y.abs(), x.abs());
+    (if x < 0.0 { PI - first } else { first }).copysign(y)
 }
 
 /// w of φi − φo − π in [−π, π].
@@ -114,7 +121,7 @@ impl GivenLobe<'_> {
         let [cos, sin] = self.axis;
         let (x, y) = (wi.x * cos + wi.y * sin, wi.y * cos - wi.x * sin);
         // The normal has no azimuth: its density is that towards the mirror direction.
-        let (s, w) = if s < POLE { (POLE, 0.0) } else { (s.min(1.0), inverse_azimuth((-y).atan2(-x))) };
+        let (s, w) = if s < POLE { (POLE, 0.0) } else { (s.min(1.0), inverse_azimuth(turn(-y, -x))) };
         self.slice.density([s, 0.5 + 0.5 * w]) / area(s, w)
     }
 
@@ -177,6 +184,8 @@ mod tests {
         for k in -50..=50 {
             let w = f64::from(k) / 50.0;
             assert!((inverse_azimuth(azimuth(w)) - w).abs() < 1e-14);
+            let (sin, cos) = (PI * w).sin_cos();
+            assert!((turn(sin, cos) - sin.atan2(cos)).abs() < 1e-15);
         }
         let axis = [0.6, 0.8];
         for (s, w) in [(0.3, 0.2), (0.9, -0.7), (1.0, 1.0), (0.0, 0.0)] {

@@ -120,11 +120,13 @@ impl Grid {
         }
     }
 
-    /// The value at a point, of a grid with one component.
-    pub fn value(&self, blend: &Blend, point: [f64; 2]) -> f64 {
-        let mut out = [0.0];
-        self.at(blend, point, &mut out);
-        out[0]
+    /// The value at a point of one slice, of a grid with one component.
+    #[inline]
+    pub fn value(&self, slice: usize, [x, y]: [f64; 2]) -> f64 {
+        let ((i, s), (j, t)) = (patch(self.nx, x), patch(self.ny, y));
+        let row = (slice * self.ny + j) * self.nx + i;
+        let along = |row: usize| (1.0 - s) * self.values[row] + s * self.values[row + 1];
+        (1.0 - t) * along(row) + t * along(row + self.nx)
     }
 }
 
@@ -249,7 +251,7 @@ impl Warp {
 
     fn sample(&self, blend: &Blend, [ux, uy]: [f64; 2]) -> ([f64; 2], f64) {
         let before = |j: usize| blend.sum(|slice| self.marginal[slice * self.ny + j]);
-        let j = interval(self.ny, uy, before);
+        let j = interval(self.ny, uy, 1.0, before);
         let (r0, r1) = (self.row(blend, j), self.row(blend, j + 1));
         let steps_y = (self.ny - 1) as f64;
         let t = part(r0, r1, (uy - before(j)) * steps_y);
@@ -257,8 +259,9 @@ impl Warp {
             let at = |j| self.node(blend, &self.conditional, i, j);
             (1.0 - t) * at(j) + t * at(j + 1)
         };
-        let target = ux * ((1.0 - t) * r0 + t * r1);
-        let i = interval(self.nx, target, before);
+        let whole = (1.0 - t) * r0 + t * r1;
+        let target = ux * whole;
+        let i = interval(self.nx, target, whole, before);
         let [a, b] = self.ends(blend, i, (j, t));
         let steps_x = (self.nx - 1) as f64;
         let s = part(a, b, (target - before(i)) * steps_x);
@@ -306,10 +309,28 @@ impl Slice<'_> {
     }
 }
 
-/// The interval k in 0..n − 1 with cumulative(k) ≤ u < cumulative(k + 1).
+/// The interval k in 0..n − 1 with cumulative(k) ≤ u < cumulative(k + 1), looked
+/// for about where an even density of this `total` has it.
 #[inline]
-fn interval(n: usize, u: f64, cumulative: impl Fn(usize) -> f64) -> usize {
+fn interval(n: usize, u: f64, total: f64, cumulative: impl Fn(usize) -> f64) -> usize {
     let (mut lo, mut hi) = (0, n - 1);
+    let even = ((u / total * hi as f64) as usize).min(hi - 1);
+    let mut step = 1;
+    if cumulative(even) <= u {
+        lo = even;
+        while lo + step < hi && cumulative(lo + step) <= u {
+            lo += step;
+            step *= 2;
+        }
+        hi = hi.min(lo + step);
+    } else {
+        hi = even;
+        while step < hi && cumulative(hi - step) > u {
+            hi -= step;
+            step *= 2;
+        }
+        lo = lo.max(hi.saturating_sub(step));
+    }
     while hi - lo > 1 {
         let middle = (lo + hi) / 2;
         if cumulative(middle) <= u {
