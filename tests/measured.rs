@@ -330,6 +330,25 @@ fn energy_sees_too_much_light_and_bounds_missing_light_from_below() {
     assert!(found.len() == 1 && found[0].contains("% of the table being missing"), "{found:?}");
 }
 
+/// A fifth of the cells is missing here and there, as no interpolation likes it.
+#[test]
+fn scattered_holes_raise_no_false_alarm() {
+    let mut bytes = glossy().to_vec();
+    for cell in (0..90 * 90 * 180usize).filter(|k| k.wrapping_mul(0x9e37_79b9) >> 7 & 1023 < 205) {
+        for c in 0..3 {
+            let at = 12 + 8 * (cell + c * 90 * 90 * 180);
+            bytes[at..at + 8].copy_from_slice(&(-1.0f64).to_le_bytes());
+        }
+    }
+    let table = opened(&bytes);
+    let missing = table.describe().table.unwrap().missing;
+    assert!((missing - 0.2).abs() < 0.01, "{missing}");
+    let results = measure([0.0, 60.0, 85.0].map(|theta| case("holes", table.clone(), theta, &[])).into());
+    for verdict in [Verdict::Fail, Verdict::Error, Verdict::Inconclusive] {
+        assert_eq!(told(&results, verdict), [""; 0]);
+    }
+}
+
 #[test]
 fn bad_files_are_told_with_place_and_values() {
     let error = |bytes: &[u8]| read(bytes, Interpolation::Linear).err().expect("an error").to_string();

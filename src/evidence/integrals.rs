@@ -109,7 +109,7 @@ impl Integrals {
             draws,
             mass: 1e-5,
             // Steps and kinks of a table keep the error falling slowly. Half of what
-            // means may be off by; it enters what they are judged by.
+            // means may be off by; what is reached enters what they are judged by.
             value: if tabulated { 5e-4 } else { 2e-5 },
             evaluations,
             independent: tabulated,

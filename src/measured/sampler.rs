@@ -163,6 +163,12 @@ fn slice(theta: f64, value: &(impl Fn(Direction, Direction) -> f64 + Sync)) -> V
             floor.push((1.0 - s * s).max(0.0) / PI * area);
         }
     }
+    // w = −1 and w = 1 are one azimuth, that of wo.
+    for i in 0..NODES {
+        let j = NODES * (NODES - 1) + i;
+        let mean = 0.5 * (table[i] + table[j]);
+        (table[i], table[j]) = (mean, mean);
+    }
     let sum: f64 = table.iter().sum();
     let scale = if sum > 0.0 { (1.0 - FLOOR) * floor.iter().sum::<f64>() / sum } else { 0.0 };
     table.iter().zip(floor).map(|(f, floor)| scale * f + FLOOR * floor).collect()
@@ -239,6 +245,11 @@ mod tests {
         assert!(sampler.given(Direction::from_angles(2.0, 0.0), 1).is_none());
         let lobe = sampler.given(Direction::NORMAL, 1).unwrap();
         assert_eq!(lobe.pdf(Direction::from_angles(2.0, 0.0)), 0.0);
+        // Nor does it jump where azimuths begin anew, even of values that do.
+        let lopsided = IsotropicSampler::new(|wo, wi| if wo.x * wi.y > wo.y * wi.x { 1.0 } else { 0.5 });
+        let lobe = lopsided.given(Direction::from_angles(1.0, 0.0), 1).unwrap();
+        let beside = |phi: f64| lobe.pdf(Direction::from_angles(0.8, phi));
+        assert!((beside(1e-9) / beside(-1e-9) - 1.0).abs() < 1e-6);
         // A black surface is still drawn from.
         let black = IsotropicSampler::new(|_, _| 0.0);
         let p = black.given(Direction::NORMAL, 1).unwrap().pdf(Direction::from_angles(0.7, 0.0));

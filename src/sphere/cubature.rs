@@ -35,7 +35,8 @@ pub struct Goal {
     pub evaluations: u64,
     /// Whether the errors of different patches are independent, as those of an
     /// integrand whose kinks or steps lie closer than patches are: then their sum
-    /// is three times the root of the sum of their squares.
+    /// is three times the root of the sum of their squares. The goal of the values
+    /// may then be missed: their errors are told.
     pub independent: bool,
 }
 
@@ -143,7 +144,11 @@ pub fn integrate<E>(
         evaluations += (todo.len() * NODES) as u64;
         evaluate(partition, &mut todo, goal, &mut f, &mut values, &mut errors, &mut largest)?;
         done.append(&mut todo);
-        let split = to_split(&done, &values, &errors, partition.len(), goal, pilot_size);
+        let mut split = to_split(&done, &values, &errors, partition.len(), goal, pilot_size);
+        if 2 * evaluations >= goal.evaluations {
+            // The rest is for what must be reached.
+            split.iter_mut().filter(|s| **s == Split::Wanted).for_each(|s| *s = Split::No);
+        }
         let converged = !split.contains(&Split::Needed);
         if !split.iter().any(|s| *s != Split::No) || evaluations >= goal.evaluations {
             let mut result = LeafIntegrals {
@@ -326,6 +331,8 @@ enum Split {
     /// The pilot found other than the rule says: worth a look, but a wrong pilot
     /// must not keep the cubature from its goals.
     Suspected,
+    /// A goal is not reached with it that may be missed at the cap of evaluations.
+    Wanted,
     /// A goal is not reached with it.
     Needed,
 }
@@ -380,8 +387,8 @@ fn to_split(
             let error = &errors[k * n..];
             let by_cell =
                 cell_sum > NONCENTRALITY && cell_term(patch.leaf as usize) * error[0] > NONCENTRALITY * share;
-            let by_total =
-                (0..steering).any(|c| total_error[c] > allowed(c) && error[c] > allowed(c) * share);
+            let off = |c: usize| total_error[c] > allowed(c) && error[c] > allowed(c) * share;
+            let (by_mass, by_value) = (off(0), (1..steering).any(off));
             let solid_angle = STERADIANS * patch.cell.area();
             let by_marker = patch.markers.iter().any(|m| {
                 (m.density > 3.0 * patch.seen[0] && m.density * solid_angle > allowed(0))
@@ -392,8 +399,10 @@ fn to_split(
             let found = patch.pilot.len() as f64;
             let by_pilot = patch.suspicion < SUSPICION
                 && (found - expected).abs() > 5.0 * found.max(expected).max(0.0).sqrt() + 5.0;
-            if by_cell || by_total || by_marker {
+            if by_cell || by_mass || by_marker || by_value && !goal.independent {
                 Split::Needed
+            } else if by_value {
+                Split::Wanted
             } else if by_pilot {
                 Split::Suspected
             } else {
