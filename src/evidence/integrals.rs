@@ -107,9 +107,9 @@ impl Integrals {
             components: 1 + 2 * channels + 3,
             controlled: channels,
             draws,
-            mass: 1e-5,
-            // Steps and kinks of a table keep the error falling slowly. Half of what
-            // means may be off by; what is reached enters what they are judged by.
+            // Steps and kinks of a table let errors fall slowly. These are a tenth and a
+            // half of what masses and means may be off by, and enter what they are judged by.
+            mass: if tabulated { 1e-4 } else { 1e-5 },
             value: if tabulated { 5e-4 } else { 2e-5 },
             evaluations,
             independent: tabulated,
