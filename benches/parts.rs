@@ -1,7 +1,8 @@
 //! Times of the parts that a run spends its time in: `cargo bench --bench parts`.
 
 use criterion::{BatchSize, Criterion, Throughput, criterion_group, criterion_main};
-use gonio::bsdf::{Samples, Subject, Transport};
+use gonio::bsdf::{Samples, Spectrum, Subject, Transport};
+use gonio::measured::{Interpolation, MerlTable, Resolution, Rgl, read};
 use gonio::models::microfacet::{Distribution, Fresnel, Masking, NormalSampling, Roughness, TorranceSparrow};
 use gonio::sphere::{Chart, Partition, Point};
 use gonio::statistics::noncentral;
@@ -49,5 +50,16 @@ fn parts(criterion: &mut Criterion) {
     });
 }
 
-criterion_group!(benches, parts);
+/// Reading, validating and making ready: a MERL file of 35 MB, and an RGL file.
+fn files(criterion: &mut Criterion) {
+    let merl = MerlTable::bake(|wo, wi| [0.2, 0.1 + 0.1 * wo.dot(wi).abs(), 0.3]);
+    let rgl = Rgl::bake("grey", &[], 0.5, &Resolution::default(), |_, _| Spectrum::uniform(3, 0.2));
+    let mut group = criterion.benchmark_group("open");
+    group.sample_size(10);
+    group.bench_function("MERL", |b| b.iter(|| read(&merl, Interpolation::Linear).expect("a table")));
+    group.bench_function("RGL", |b| b.iter(|| read(&rgl, Interpolation::Linear).expect("a table")));
+    group.finish();
+}
+
+criterion_group!(benches, parts, files);
 criterion_main!(benches);

@@ -93,6 +93,8 @@ pub struct Parameter {
     pub only_when: Option<(String, Vec<String>)>,
     /// It only matters while this holds of the other parameters.
     pub only_if: Option<Condition>,
+    /// It may change nothing, as interpolation does to a constant table.
+    pub idle: bool,
 }
 
 /// A condition on the parameters of a subject.
@@ -241,12 +243,19 @@ impl Model {
         doc: impl Into<String>,
         build: impl Fn(&Parameters, &Parts) -> Result<S, String> + Send + Sync + 'static,
     ) -> Self {
-        Self {
-            name: name.into(),
-            doc: doc.into(),
-            parameters: Vec::new(),
-            build: Arc::new(move |p, parts| Ok(Arc::new(build(p, parts)?) as Arc<dyn Subject>)),
-        }
+        let build = move |p: &Parameters, parts: &Parts| Ok(Arc::new(build(p, parts)?) as Arc<dyn Subject>);
+        Self { name: name.into(), doc: doc.into(), parameters: Vec::new(), build: Arc::new(build) }
+    }
+
+    /// As [`new`](Self::new), for a model whose parameters decide what type of
+    /// subject it is.
+    pub fn dynamic(
+        name: impl Into<String>,
+        doc: impl Into<String>,
+        build: impl Fn(&Parameters) -> Result<Arc<dyn Subject>, String> + Send + Sync + 'static,
+    ) -> Self {
+        let build = move |p: &Parameters, _: &Parts| build(p);
+        Self { name: name.into(), doc: doc.into(), parameters: Vec::new(), build: Arc::new(build) }
     }
 
     fn declare(mut self, name: &str, kind: Kind, doc: &str) -> Self {
@@ -257,6 +266,7 @@ impl Model {
             role: None,
             only_when: None,
             only_if: None,
+            idle: false,
         });
         self
     }
@@ -285,6 +295,13 @@ impl Model {
     /// The parameter declared last has this meaning.
     pub fn role(mut self, role: Role) -> Self {
         self.parameters.last_mut().expect("a parameter was declared").role = Some(role);
+        self
+    }
+
+    /// The parameter declared last may change nothing, and `sensitivity` leaves it
+    /// alone.
+    pub fn idle(mut self) -> Self {
+        self.parameters.last_mut().expect("a parameter was declared").idle = true;
         self
     }
 
@@ -373,8 +390,7 @@ impl Model {
             .iter()
             .filter_map(|p| {
                 let value = parameters.0.get(&p.name)?;
-                let text = value.to_string();
-                let text = if text.contains([',', '(', ')']) { format!("({text})") } else { text };
+                let text = parenthesised(&value.to_string());
                 (Some(value) != p.default().as_ref()).then(|| format!("{}={text}", p.name))
             })
             .collect();
@@ -432,6 +448,14 @@ impl Spelling {
         parts.retain(|(_, part)| !part.is_empty());
         parts
     }
+}
+
+/// The model that files are.
+pub const MEASURED: &str = "measured";
+
+/// A value as it stands within the spelling of a subject.
+fn parenthesised(text: &str) -> String {
+    if text.contains([',', '(', ')']) { format!("({text})") } else { text.into() }
 }
 
 /// Whether each parenthesis has its partner.
@@ -503,6 +527,14 @@ impl Registry {
         Ok(Resolved { spelling: model.spell(&parameters), parameters, subject })
     }
 
+    /// How the subject in a file is written, where `text` is no model's name but
+    /// the path of a file: `measured:file=PATH`.
+    pub fn spelling_of_file(&self, text: &str) -> Option<String> {
+        let name = text.split_once(':').map_or(text, |(name, _)| name);
+        let is_file = self.model(name).is_err() && std::path::Path::new(text).is_file();
+        is_file.then(|| format!("{MEASURED}:file={}", parenthesised(text)))
+    }
+
     /// The subject that the parameter `parameter` names, and its one spelling.
     fn nested(&self, parameter: &str, text: &str) -> Result<(String, Arc<dyn Subject>), RegistryError> {
         let resolved = text.parse().and_then(|spelling| self.resolve(&spelling));
@@ -526,7 +558,7 @@ pub struct Resolved {
 #[derive(Clone, Debug, PartialEq, thiserror::Error)]
 pub enum RegistryError {
     /// No such model.
-    #[error("no subject is called `{name}`{}", did_you_mean(.nearest, .known))]
+    #[error("no subject is called `{name}`{}{}", and_no_file(.name), did_you_mean(.nearest, .known))]
     UnknownModel {
         /// As asked for.
         name: String,
@@ -613,6 +645,11 @@ impl RegistryError {
             _ => self,
         }
     }
+}
+
+/// For what looks like the path of a file.
+fn and_no_file(name: &str) -> &'static str {
+    if name.contains(['/', '.', '\\']) { ", and there is no such file" } else { "" }
 }
 
 fn suggestion(nearest: &Option<String>) -> String {

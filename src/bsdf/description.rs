@@ -33,6 +33,27 @@ impl Default for Has {
     }
 }
 
+/// What a subject that looks its values up in a table says of that table.
+///
+/// Between its nodes such a subject is only as smooth as its interpolation, so
+/// integrals treat the errors of different cells as independent, and it equals
+/// another subject only as far as its nodes resolve that one.
+#[derive(Clone, Copy, Debug, Default, PartialEq, Serialize, Deserialize, JsonSchema)]
+pub struct Table {
+    /// Share in [0, 1] of the table within reach that holds no data and counts as 0:
+    /// energy is a lower bound then.
+    pub missing: f64,
+}
+
+/// An identity that the very form of a subject guarantees.
+#[derive(Clone, Debug, PartialEq, Serialize, Deserialize, JsonSchema)]
+pub struct ByConstruction {
+    /// The id of the check that could not fail.
+    pub check: String,
+    /// Why not.
+    pub because: String,
+}
+
 /// What a subject says of itself, before anything is measured.
 #[derive(Clone, Debug, PartialEq, Serialize, Deserialize, JsonSchema)]
 pub struct Description {
@@ -48,6 +69,13 @@ pub struct Description {
     pub has: Has,
     /// What it promises.
     pub claims: Claims,
+    /// Identities that its form guarantees: checks of them are skipped, for the
+    /// reason given here.
+    #[serde(default, skip_serializing_if = "Vec::is_empty")]
+    pub by_construction: Vec<ByConstruction>,
+    /// Its table, if its values come from one.
+    #[serde(default, skip_serializing_if = "Option::is_none")]
+    pub table: Option<Table>,
 }
 
 impl Description {
@@ -61,6 +89,8 @@ impl Description {
             precision: Precision::F64,
             has: Has::default(),
             claims: Claims::default(),
+            by_construction: Vec::new(),
+            table: None,
         }
     }
 
@@ -96,6 +126,18 @@ impl Description {
     /// With this precision.
     pub fn precision(mut self, precision: Precision) -> Self {
         self.precision = precision;
+        self
+    }
+
+    /// With an identity that its form guarantees, because of this.
+    pub fn by_construction(mut self, check: &str, because: &str) -> Self {
+        self.by_construction.push(ByConstruction { check: check.into(), because: because.into() });
+        self
+    }
+
+    /// With values that come from a table.
+    pub fn table(mut self, table: Table) -> Self {
+        self.table = Some(table);
         self
     }
 }

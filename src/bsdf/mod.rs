@@ -11,7 +11,7 @@ mod spectrum;
 mod subject;
 
 pub use claims::{Claims, Cosine, OffSupport, RandomNumbers, Transport, TransportModes};
-pub use description::{Description, Has, Precision};
+pub use description::{ByConstruction, Description, Has, Precision, Table};
 pub use direction::Direction;
 pub use sample::{Lobe, Sample, Samples};
 pub use spectrum::{MAX_CHANNELS, Spectrum};

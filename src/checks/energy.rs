@@ -78,15 +78,22 @@ impl Check for Energy {
         let tolerance = tolerance(evidence.description.precision);
         let effect =
             Effect::interval("flux − 1", (flux - 1.0, flux - 1.0 - error, flux - 1.0 + error), tolerance);
+        let missing = match evidence.description.table {
+            Some(table) if table.missing > 0.0 => format!(
+                ", {:.2} % of the table being missing and counted as 0: a lower bound",
+                100.0 * table.missing
+            ),
+            _ => String::new(),
+        };
         let outcome = Outcome {
             effect: Some(effect),
             channel: Some(channel),
             detection_limit: Some(tolerance + error),
-            ..Outcome::new(Verdict::Pass, format!("flux {flux:.5} ≤ 1"))
+            ..Outcome::new(Verdict::Pass, format!("flux {flux:.5} ≤ 1{missing}"))
         };
         if flux - error > 1.0 + tolerance {
             let name = &evidence.description.channels[channel];
-            let message = format!("flux {flux:.5} of channel {name} leaves where 1 arrives");
+            let message = format!("flux {flux:.5} of channel {name} leaves where 1 arrives{missing}");
             return Outcome { verdict: Verdict::Fail, message, ..outcome }.into();
         }
         outcome.into()

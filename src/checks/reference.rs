@@ -1,13 +1,39 @@
 //! A subject equals another one.
 
 use super::goodness_of_fit::against;
-use super::outcome::{Check, Judgement, Outcome, Terms, Verdict, needs_determinism};
+use super::outcome::{Check, Effect, Judgement, Outcome, Terms, Verdict, needs_determinism};
 use crate::bsdf::Description;
-use crate::evidence::{Evidence, Measurement};
+use crate::evidence::{Evidence, Measurement, Resemblance};
 
 /// Equals the subject that the suite names as its `reference`: eval and pdf
-/// pointwise, samples in distribution.
+/// pointwise, samples in distribution. A table equals it as far as its nodes
+/// resolve it: eval alone is compared then, by RMS over the light.
 pub struct Reference;
+
+/// RMS relative difference that counts as wrong where a table is compared, unless
+/// the suite tolerates more: what the tables in use resolve (METHOD §3).
+const RESOLVED: f64 = 0.02;
+
+fn resembles(table: &Resemblance, name: &str, evidence: &Evidence, terms: &Terms) -> Outcome {
+    let tolerance = RESOLVED.max(terms.tolerance);
+    let rms = table.rms.0;
+    let shown = format!("{:.2} % RMS at {} samples of the light", 100.0 * rms, table.places);
+    let outcome = Outcome {
+        effect: Some(Effect::exact("RMS relative difference of eval", rms, tolerance)),
+        channel: Some(table.channel),
+        worst: table.worst.clone(),
+        ..Outcome::new(Verdict::Pass, format!("equals {name} as far as a table can: {shown}"))
+    };
+    if table.places == 0 {
+        return Outcome::inconclusive("no continuous sample came at which to compare values");
+    }
+    if !(rms <= tolerance) {
+        let channel = &evidence.description.channels[table.channel];
+        let message = format!("eval of {name} differs by {shown} (channel {channel})");
+        return Outcome { verdict: Verdict::Fail, message, ..outcome };
+    }
+    Outcome { worst: None, ..outcome }
+}
 
 impl Check for Reference {
     fn id(&self) -> &'static str {
@@ -35,6 +61,9 @@ impl Check for Reference {
         if let Some(reason) = &reference.incomparable {
             return Outcome::new(Verdict::Fail, format!("not comparable with {}: {reason}", reference.name))
                 .into();
+        }
+        if let Some(table) = &reference.table {
+            return resembles(table, &reference.name, evidence, terms).into();
         }
         for (tally, function) in [(&reference.eval, "eval"), (&reference.pdf, "pdf")] {
             if tally.is_broken() {

@@ -19,7 +19,7 @@ use toml::Spanned;
 #[command(after_help = "Without --theta, the six polar angles of a suite are measured, at both sides of \
     a subject that has two, each at one of its three azimuths in turn.")]
 pub struct CheckArgs {
-    /// NAME or NAME:KEY=VALUE,KEY=VALUE; `gonio list` shows them.
+    /// NAME or NAME:KEY=VALUE,KEY=VALUE (`gonio list` shows them), or a measured file.
     pub subject: String,
     /// How to measure.
     #[command(flatten)]
@@ -93,7 +93,7 @@ impl CheckArgs {
 
     fn plan(&self, registry: &Registry) -> Result<Plan<'static>, CliError> {
         let mut typed = Typed::default();
-        let entry = self.entry(&mut typed)?;
+        let entry = self.entry(&mut typed, registry)?;
         let mut file = SuiteFile::new("check", SOURCE, &typed.text);
         file.false_alarm = self.false_alarm.unwrap_or(file.false_alarm);
         file.settings.tolerance = self.tolerance;
@@ -116,16 +116,18 @@ impl CheckArgs {
         Ok(plan)
     }
 
-    fn entry(&self, typed: &mut Typed) -> Result<Entry, CliError> {
-        let span = typed.push(&self.subject);
+    fn entry(&self, typed: &mut Typed, registry: &Registry) -> Result<Entry, CliError> {
+        let spelled = |text: &str| registry.spelling_of_file(text).unwrap_or_else(|| text.into());
+        let subject = spelled(&self.subject);
+        let span = typed.push(&subject);
         let wrong = |typed: &Typed, m: Mistake| SuiteError::new(SOURCE, &typed.text, vec![m]);
-        let spelling: Spelling = match self.subject.parse() {
+        let spelling: Spelling = match subject.parse() {
             Ok(spelling) => spelling,
             Err(e) => return Err(wrong(typed, Mistake::of_registry(span, &e)).into()),
         };
         let mut parameters: Vec<(Spanned<String>, Vec<_>)> = Vec::new();
-        let rest = (spelling.name.len() + 1).min(self.subject.len());
-        let parts = Spelling::parts(&self.subject[rest..]);
+        let rest = (spelling.name.len() + 1).min(subject.len());
+        let parts = Spelling::parts(&subject[rest..]);
         for ((start, part), (key, value)) in parts.into_iter().zip(&spelling.parameters) {
             let start = rest + start;
             let key_span = start..start + key.len();
@@ -138,7 +140,8 @@ impl CheckArgs {
         }
         let reference = self.reference.as_ref().map(|text| {
             typed.push("--reference");
-            Spanned::new(typed.push(text), text.clone())
+            let text = spelled(text);
+            Spanned::new(typed.push(&text), text)
         });
         let mut claims = ClaimsPatch::default();
         for (name, value) in &self.claim {

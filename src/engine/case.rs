@@ -60,6 +60,9 @@ fn applies(check: &dyn Check, case: &Case, description: &Description) -> Result<
     if check.id() == "reference" && case.company.reference.is_none() {
         return Err("the suite names no reference".into());
     }
+    if let Some(sure) = description.by_construction.iter().find(|sure| sure.check == check.id()) {
+        return Err(format!("cannot fail by construction: {}", sure.because));
+    }
     check.applies(description)
 }
 

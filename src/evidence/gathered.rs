@@ -322,7 +322,8 @@ impl<'a> Gatherer<'a> {
         let claims: Claims = description.claims;
         let other = Meter::new(other, description, self.watch.clone());
         let mut comparison = Comparison::gather(&self.meter, &self.setup, &self.pilot, &other, name)?;
-        if let (Some(partition), true) = (&self.evidence.partition, other.description.has.pdf) {
+        let in_distribution = comparison.table.is_none() && other.description.has.pdf;
+        if let (Some(partition), true) = (&self.evidence.partition, in_distribution) {
             let pilot = self.pilot_points(partition.chart());
             let setup = Setup { claims, ..self.setup.clone() };
             let integrals = Integrals::gather(&other, &setup, partition, &pilot, draws, MOST_EVALUATIONS)?;

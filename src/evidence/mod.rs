@@ -26,4 +26,4 @@ pub use pairs::Pairs;
 pub use samples::{Pilot, SampleIdentities};
 pub use setup::Setup;
 pub use tally::{Place, Tally, relative_error};
-pub use variations::{Build, CHANGE, Comparison, Limit, Variant, Variation};
+pub use variations::{Build, CHANGE, Comparison, Limit, Resemblance, Variant, Variation};

@@ -230,6 +230,38 @@ pub fn two_sided(meter: &Meter, setup: &Setup, pilot: &Pilot) -> Result<Tally, H
     Ok(tally)
 }
 
+/// How much a table resembles another subject, over directions drawn in
+/// proportion to its light.
+#[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
+pub struct Resemblance {
+    /// Root mean square of (a − b)/max(a, b), of the channel where it is largest.
+    pub rms: Figure,
+    /// That channel.
+    pub channel: usize,
+    /// Directions compared.
+    pub places: u64,
+    /// Where the difference is largest.
+    pub worst: Option<Place>,
+}
+
+impl Resemblance {
+    /// Of two values at each of `wi`, row-major.
+    fn of(setup: &Setup, wi: &[Direction], a: &[f64], b: &[f64]) -> Self {
+        let channels = a.len() / wi.len().max(1);
+        let difference = |k: usize| (a[k] - b[k]) / a[k].max(b[k]).max(setup.floor());
+        let mean_square = |c: usize| {
+            let squares = (c..a.len()).step_by(channels.max(1)).map(|k| difference(k).powi(2));
+            squares.sum::<f64>() / wi.len().max(1) as f64
+        };
+        let largest = (0..channels).map(|c| (c, mean_square(c))).max_by(|x, y| x.1.total_cmp(&y.1));
+        let (channel, square) = largest.unwrap_or((0, 0.0));
+        let far = (0..a.len()).max_by(|x, y| difference(*x).abs().total_cmp(&difference(*y).abs()));
+        let worst =
+            far.map(|k| Place::pair(setup.wo, wi[k / channels]).value("eval", a[k]).value("reference", b[k]));
+        Self { rms: square.sqrt().into(), channel, places: wi.len() as u64, worst }
+    }
+}
+
 /// A comparison with another subject.
 #[derive(Clone, Debug, Default, PartialEq, Serialize, Deserialize)]
 pub struct Comparison {
@@ -237,6 +269,10 @@ pub struct Comparison {
     pub name: String,
     /// eval of both.
     pub eval: Tally,
+    /// RMS relative difference of eval over the light, where one of them is a table;
+    /// then eval and pdf are not compared at each place.
+    #[serde(default)]
+    pub table: Option<Resemblance>,
     /// pdf of both.
     pub pdf: Tally,
     /// ∫ of the other's pdf by leaf, which the draws must follow.
@@ -259,6 +295,7 @@ impl Comparison {
         let mut found = Self {
             name: name.into(),
             eval: Tally::new(setup.tolerance()),
+            table: None,
             pdf: Tally::new(setup.tolerance()),
             masses: Vec::new(),
             unreliable: None,
@@ -269,8 +306,17 @@ impl Comparison {
                 Some(format!("{} channels here, {} there", meter.channels(), other.channels()));
             return Ok(found);
         }
-        let wi = probes::directions(setup, pilot, 4 * ROWS);
         let (mut a, mut b) = (Vec::new(), Vec::new());
+        let tabulated = [meter, other].iter().any(|m| m.description.table.is_some());
+        if tabulated && meter.description.has.eval && other.description.has.eval {
+            let step = (pilot.wi.len() / (32 * ROWS)).max(1);
+            let wi: Vec<Direction> = pilot.wi.iter().step_by(step).copied().collect();
+            meter.eval(setup.wo, &wi, setup.transport, &mut a)?;
+            other.eval(setup.wo, &wi, setup.transport, &mut b)?;
+            found.table = Some(Resemblance::of(setup, &wi, &a, &b));
+            return Ok(found);
+        }
+        let wi = probes::directions(setup, pilot, 4 * ROWS);
         if meter.description.has.eval && other.description.has.eval {
             meter.eval(setup.wo, &wi, setup.transport, &mut a)?;
             other.eval(setup.wo, &wi, setup.transport, &mut b)?;

@@ -62,5 +62,6 @@ pub fn all() -> Vec<Model> {
         plastic::model(),
         microfacet::rough_plastic::model(),
         blend::model(),
+        crate::measured::model(),
     ]
 }

@@ -169,7 +169,7 @@ const OCTANT: [f64; 12] = [
 /// (4/π) arctan(minor/major) for 0 ≤ minor ≤ major; 0 where both are 0. Without a
 /// call or a branch, since it is half of the cost of finding a cell.
 #[inline(always)]
-fn octants(minor: f64, major: f64) -> f64 {
+pub fn octants(minor: f64, major: f64) -> f64 {
     // tan(π/8); beyond it arctan(s) = π/4 − arctan((1−s)/(1+s)).
     let beyond = minor > (std::f64::consts::SQRT_2 - 1.0) * major;
     let numerator = if beyond { minor - major } else { minor };

@@ -47,6 +47,25 @@ pub struct Goal {
     pub value: f64,
     /// Stop at this many evaluations of the integrand.
     pub evaluations: u64,
+    /// Whether the errors of different patches are independent, as those of an
+    /// integrand whose kinks or steps lie closer than patches are: then their sum
+    /// is three times the root of the sum of their squares. The goal of the values
+    /// may then be missed: their errors are told.
+    pub independent: bool,
+}
+
+impl Goal {
+    /// The error of a sum, of the errors of its parts: of their sum, and of the sum
+    /// of their squares.
+    fn sum_of(&self, sum: f64, squares: f64) -> f64 {
+        if self.independent { sum.min(3.0 * squares.sqrt()) } else { sum }
+    }
+
+    /// The share of an allowed error that each of `parts` may have.
+    fn share(&self, parts: usize) -> f64 {
+        let parts = parts as f64;
+        if self.independent { 1.0 / parts.min(3.0 * parts.sqrt()) } else { 1.0 / parts }
+    }
 }
 
 /// N Σ e²/p that cells may have, see [`Goal::draws`].
@@ -80,6 +99,8 @@ pub struct LeafIntegrals {
     pub values: Vec<f64>,
     /// Estimates of the absolute errors, likewise.
     pub errors: Vec<f64>,
+    /// Estimates of the errors of the totals, per component.
+    pub total_errors: Vec<f64>,
     /// The largest value met at any node, per component.
     pub largest: Vec<f64>,
     /// Directions that were evaluated.
@@ -94,8 +115,8 @@ pub struct LeafIntegrals {
 impl LeafIntegrals {
     /// The total of a component and its error estimate.
     pub fn total(&self, component: usize) -> (f64, f64) {
-        let sum = |v: &[f64]| v.iter().skip(component).step_by(self.components).sum();
-        (sum(&self.values), sum(&self.errors))
+        let total = self.values.iter().skip(component).step_by(self.components).sum();
+        (total, self.total_errors[component])
     }
 }
 
@@ -141,24 +162,38 @@ pub fn integrate<E>(
         evaluations += (todo.len() * NODES) as u64;
         evaluate(partition, &mut todo, goal, &mut f, &mut values, &mut errors, &mut largest)?;
         done.append(&mut todo);
-        let split = to_split(&done, &values, &errors, partition.len(), goal, pilot_size);
+        let mut split = to_split(&done, &values, &errors, partition.len(), goal, pilot_size);
+        if 2 * evaluations >= goal.evaluations {
+            // The rest is for what must be reached.
+            split.iter_mut().filter(|s| **s == Split::Wanted).for_each(|s| *s = Split::No);
+        }
         let converged = !split.contains(&Split::Needed);
         if !split.iter().any(|s| *s != Split::No) || evaluations >= goal.evaluations {
             let mut result = LeafIntegrals {
                 components: goal.components,
                 values: vec![0.0; partition.len() * goal.components],
                 errors: vec![0.0; partition.len() * goal.components],
+                total_errors: vec![0.0; goal.components],
                 largest,
                 evaluations,
                 converged,
                 patches: done.iter().map(|patch| patch.cell).collect(),
             };
+            let mut squares = vec![0.0; result.errors.len()];
             for (k, patch) in done.iter().enumerate() {
                 let (from, to) = (k * goal.components, patch.leaf as usize * goal.components);
                 for c in 0..goal.components {
                     result.values[to + c] += values[from + c];
                     result.errors[to + c] += errors[from + c];
+                    squares[to + c] += errors[from + c] * errors[from + c];
                 }
+            }
+            for c in 0..goal.components {
+                let sum = |v: &[f64]| v.iter().skip(c).step_by(goal.components).sum();
+                result.total_errors[c] = goal.sum_of(sum(&result.errors), sum(&squares));
+            }
+            for (error, squares) in result.errors.iter_mut().zip(squares) {
+                *error = goal.sum_of(*error, squares);
             }
             return Ok(result);
         }
@@ -327,6 +362,8 @@ enum Split {
     /// The pilot found other than the rule says: worth a look, but a wrong pilot
     /// must not keep the cubature from its goals.
     Suspected,
+    /// A goal is not reached with it that may be missed at the cap of evaluations.
+    Wanted,
     /// A goal is not reached with it.
     Needed,
 }
@@ -343,17 +380,23 @@ fn to_split(
     let n = goal.components;
     let steering = 1 + goal.controlled;
     let mut total = vec![0.0; steering];
-    let mut total_error = vec![0.0; steering];
+    // Sums of errors, and of their squares.
+    let mut total_error = vec![(0.0, 0.0); steering];
     let mut mass = vec![0.0; leaves];
-    let mut mass_error = vec![0.0; leaves];
+    let mut mass_error = vec![(0.0, 0.0); leaves];
+    let add = |sums: &mut (f64, f64), error: f64| *sums = (sums.0 + error, sums.1 + error * error);
     for (k, patch) in patches.iter().enumerate() {
         for c in 0..steering {
             total[c] += values[k * n + c];
-            total_error[c] += errors[k * n + c];
+            add(&mut total_error[c], errors[k * n + c]);
         }
         mass[patch.leaf as usize] += values[k * n];
-        mass_error[patch.leaf as usize] += errors[k * n];
+        add(&mut mass_error[patch.leaf as usize], errors[k * n]);
     }
+    let combined = |sums: Vec<(f64, f64)>| -> Vec<f64> {
+        sums.iter().map(|(sum, squares)| goal.sum_of(*sum, *squares)).collect()
+    };
+    let (total_error, mass_error) = (combined(total_error), combined(mass_error));
     // An error below rounding of the whole cannot be reduced.
     let allowed = |c: usize| {
         let relative = if c == 0 { goal.mass } else { goal.value };
@@ -364,7 +407,7 @@ fn to_split(
         goal.draws as f64 * mass_error[leaf] / mass[leaf].max(floor)
     };
     let cell_sum: f64 = (0..leaves).map(|l| cell_term(l) * mass_error[l]).sum();
-    let share = 1.0 / patches.len() as f64;
+    let share = goal.share(patches.len());
     patches
         .iter()
         .enumerate()
@@ -375,8 +418,8 @@ fn to_split(
             let error = &errors[k * n..];
             let by_cell =
                 cell_sum > NONCENTRALITY && cell_term(patch.leaf as usize) * error[0] > NONCENTRALITY * share;
-            let by_total =
-                (0..steering).any(|c| total_error[c] > allowed(c) && error[c] > allowed(c) * share);
+            let off = |c: usize| total_error[c] > allowed(c) && error[c] > allowed(c) * share;
+            let (by_mass, by_value) = (off(0), (1..steering).any(off));
             let solid_angle = STERADIANS * patch.cell.area();
             let by_marker = patch.markers.iter().any(|m| {
                 (m.density > 3.0 * patch.seen[0] && m.density * solid_angle > allowed(0))
@@ -387,8 +430,10 @@ fn to_split(
             let found = patch.pilot.len() as f64;
             let by_pilot = patch.suspicion < SUSPICION
                 && (found - expected).abs() > 5.0 * found.max(expected).max(0.0).sqrt() + 5.0;
-            if by_cell || by_total || by_marker {
+            if by_cell || by_mass || by_marker || by_value && !goal.independent {
                 Split::Needed
+            } else if by_value {
+                Split::Wanted
             } else if by_pilot {
                 Split::Suspected
             } else {
@@ -412,6 +457,7 @@ mod tests {
             mass: 1e-6,
             value: 1e-6,
             evaluations: 1 << 20,
+            independent: false,
         }
     }
 

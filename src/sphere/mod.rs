@@ -6,7 +6,7 @@ mod cubature;
 mod genz_malik;
 mod partition;
 
-pub use chart::{Chart, Point, STERADIANS};
+pub use chart::{Chart, Point, STERADIANS, octants};
 pub use cubature::{Goal, LeafIntegrals, Marker, integrate};
 pub use genz_malik::{NODES, Rule};
 pub use partition::{Cell, Partition};

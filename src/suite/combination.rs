@@ -6,9 +6,11 @@ use super::pairs::product;
 use super::variants::variants;
 use crate::bsdf::{Claims, Subject};
 use crate::evidence::{Company, Meter};
-use crate::registry::{Model, Parameters, Registry, Resolved, Spelling, Value, nearest};
+use crate::registry::{Kind, Model, Parameters, Registry, Resolved, Spelling, Value, nearest};
 use std::collections::HashSet;
+use std::ops::Range;
 use std::sync::Arc;
+use toml::Spanned;
 
 /// More combinations of parameters than this are a slip.
 const MOST_COMBINATIONS: usize = 100_000;
@@ -69,9 +71,17 @@ impl Combinations {
                 Err(e) => {
                     found.refused += 1;
                     found.all.push(None);
-                    first_error.get_or_insert(e);
+                    // A file that cannot be read is no combination to leave out.
+                    if model.parameters().iter().any(|p| p.kind == Kind::File) {
+                        mistakes.push(Mistake::of_registry(place_of(entry, &spelling), &e));
+                    } else {
+                        first_error.get_or_insert(e);
+                    }
                 }
             }
+        }
+        if mistakes.len() > before {
+            return None;
         }
         if let Some(e) = first_error.filter(|_| found.all.iter().all(Option::is_none)) {
             mistakes.push(Mistake::of_registry(entry.model.span(), &e));
@@ -107,6 +117,16 @@ impl Combinations {
     }
 }
 
+/// Where the file of a combination is written.
+fn place_of(entry: &Entry, spelling: &Spelling) -> Range<usize> {
+    let holds = |(name, values): &(Spanned<String>, Vec<Spanned<Value>>)| {
+        let given =
+            spelling.parameters.iter().find(|(n, v)| n == name.get_ref() && matches!(v, Value::Text(_)))?;
+        values.iter().find(|v| name.get_ref() == "file" && v.get_ref() == &given.1).map(Spanned::span)
+    };
+    entry.parameters.iter().find_map(holds).unwrap_or(entry.model.span())
+}
+
 fn values(model: &Model, entry: &Entry, mistakes: &mut Vec<Mistake>) -> Vec<Vec<(String, Value)>> {
     let mut all = Vec::new();
     for (name, values) in &entry.parameters {
@@ -126,7 +146,7 @@ fn values(model: &Model, entry: &Entry, mistakes: &mut Vec<Mistake>) -> Vec<Vec<
     all
 }
 
-fn unknown_parameter(model: &Model, name: &toml::Spanned<String>) -> Mistake {
+fn unknown_parameter(model: &Model, name: &Spanned<String>) -> Mistake {
     let parameters = model.parameters().iter().map(|p| p.name.as_str());
     let message = format!("`{}` has no parameter `{name}`", model.name());
     let help = match nearest(name.get_ref(), parameters.clone().chain(SUBJECT_KEYS)) {

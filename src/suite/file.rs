@@ -6,7 +6,8 @@ use super::promises::{claims, waivers};
 use super::reader::{Node, Reader, azimuth, entries, fraction, polar, positive};
 use crate::bsdf::Transport;
 use crate::checks;
-use crate::registry::{Value, nearest};
+use crate::registry::{MEASURED, Value, nearest};
+use std::path::Path;
 use std::time::Duration;
 use toml::Spanned;
 use toml::de::{DeTable, DeValue};
@@ -124,7 +125,7 @@ const SUITE_KEYS: [&str; 11] = [
 pub(super) const SUBJECT_KEYS: [&str; 9] =
     ["use", "claims", "waive", "reference", "theta", "phi", "cover", "samples", "label"];
 
-const FOREIGN_KEYS: [&str; 5] = ["process", "library", "wasm", "shader", "file"];
+const FOREIGN_KEYS: [&str; 4] = ["process", "library", "wasm", "shader"];
 
 impl SuiteFile {
     /// A suite without subjects, all at its defaults.
@@ -261,6 +262,13 @@ impl SuiteFile {
         for (key, span, value) in entries(table) {
             match key {
                 "use" => (named, model) = (true, reader.text(key, value)),
+                "file" => {
+                    if !table.contains_key("use") {
+                        (named, model) = (true, Some(Spanned::new(value.span(), MEASURED.into())));
+                    }
+                    let files = self.read_files(reader, value);
+                    entry.parameters.push((Spanned::new(span, key.into()), files));
+                }
                 "label" => entry.label = self.read_label(reader, value),
                 "claims" => entry.claims = claims(reader, value),
                 "waive" => entry.waivers = waivers(reader, value),
@@ -285,13 +293,41 @@ impl SuiteFile {
             }
         }
         if !named {
-            let help = "add use = \"NAME\"; `gonio list` shows the names";
+            let help = "add use = \"NAME\" (`gonio list` shows the names) or file = \"PATH\"";
             // The span of an entry is its header.
             reader.note(Mistake::new(item.span(), "a [[subject]] without `use`", "what is it?").help(help));
         }
-        if let Some(model) = model {
+        // Files that are not there were told already.
+        let lacks_file =
+            |(name, values): &(Spanned<String>, Vec<_>)| name.get_ref() == "file" && values.is_empty();
+        if let Some(model) = model.filter(|_| !entry.parameters.iter().any(lacks_file)) {
             self.entries.push(Entry { model, ..entry });
         }
+    }
+
+    /// The paths of files, which are relative to the suite's own folder.
+    fn read_files(&self, reader: &mut Reader, value: &Node) -> Vec<Spanned<Value>> {
+        let folder = Path::new(&self.source_name).parent().unwrap_or(Path::new(""));
+        let mut files: Vec<Spanned<Value>> = Vec::new();
+        for item in reader.items("file", value).unwrap_or_default() {
+            let Some(text) = reader.text("file", item) else { continue };
+            let path = folder.join(text.get_ref());
+            let shown = path.display().to_string();
+            if !path.is_file() {
+                let what = if path.exists() { "is not a file" } else { "does not exist" };
+                let message = format!("`{shown}` {what}");
+                let help = "paths are relative to the folder of the suite";
+                reader.note(Mistake::new(text.span(), message, "no such file").help(help));
+                continue;
+            }
+            let file = Spanned::new(text.span(), Value::Text(shown.clone()));
+            if files.contains(&file) {
+                reader.twice("file", text.span(), &shown);
+            } else {
+                files.push(file);
+            }
+        }
+        files
     }
 
     fn read_label(&self, reader: &mut Reader, value: &Node) -> Option<String> {

@@ -7,7 +7,8 @@ use std::sync::Arc;
 /// For each parameter that applies: other values, and its limit if it has one.
 pub(super) fn variants(registry: &Registry, model: &Model, parameters: &Parameters) -> Vec<Variant<'static>> {
     let mut all = Vec::new();
-    for parameter in model.parameters().iter().filter(|p| p.applies(parameters)) {
+    let matters = |p: &&Parameter| p.applies(parameters) && !p.idle;
+    for parameter in model.parameters().iter().filter(matters) {
         for value in other_values(parameter, parameters) {
             let mut changed = parameters.clone();
             changed.0.insert(parameter.name.clone(), value);
