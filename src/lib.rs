@@ -15,6 +15,7 @@ pub mod engine;
 pub mod evidence;
 pub mod lecture;
 mod measure;
+pub mod measured;
 pub mod models;
 pub mod registry;
 pub mod report;

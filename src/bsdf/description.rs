@@ -48,6 +48,11 @@ pub struct Description {
     pub has: Has,
     /// What it promises.
     pub claims: Claims,
+    /// Whether its sampler and pdf follow its values only as far as a table's
+    /// resolution goes: the tolerance is that of tables then (METHOD §3), not of
+    /// `precision`. A sampler that is exact on its table needs none of it.
+    #[serde(default, skip_serializing_if = "std::ops::Not::not")]
+    pub tabulated: bool,
 }
 
 impl Description {
@@ -61,6 +66,7 @@ impl Description {
             precision: Precision::F64,
             has: Has::default(),
             claims: Claims::default(),
+            tabulated: false,
         }
     }
 
@@ -90,6 +96,12 @@ impl Description {
     /// With these functions.
     pub fn has(mut self, has: Has) -> Self {
         self.has = has;
+        self
+    }
+
+    /// With a sampler that is as fine as a table is.
+    pub fn tabulated(mut self) -> Self {
+        self.tabulated = true;
         self
     }
 

@@ -22,9 +22,11 @@ const LOOK_FACTOR: u64 = 4;
 const CONFIRMATION: [u64; 4] = [1, 2, 4, 8];
 
 /// RMS relative cell error that counts as wrong where the suite does not say
-/// (METHOD §3): what a textbook implementation in this precision reaches.
-fn default_tolerance(precision: Precision) -> f64 {
-    match precision {
+/// (METHOD §3): what a textbook implementation in this precision reaches, and
+/// what makers and readers of tables agree to.
+fn default_tolerance(description: &Description) -> f64 {
+    match description.precision {
+        _ if description.tabulated => 2e-2,
         Precision::F64 => 3e-3,
         Precision::F32 => 1e-2,
     }
@@ -147,14 +149,18 @@ impl<'r, 'a> Run<'r, 'a> {
                 Err(reason) => skipped.push(finding(check, Outcome::skipped(reason), Vec::new())),
             }
         }
-        let tolerance = case.settings.tolerance.unwrap_or(default_tolerance(description.precision));
+        let tolerance = case.settings.tolerance.unwrap_or(default_tolerance(&description));
         let terms = Terms {
             attempt: 0,
             ln_tail: f64::NEG_INFINITY,
             next: None,
             tolerance,
             mean_tolerance: MEAN_TOLERANCE,
-            detect: case.settings.detect,
+            detect: match case.settings.tolerance {
+                // No pass of a table can see much less than twice what is tolerated.
+                None if description.tabulated => case.settings.detect.max(2.0 * tolerance),
+                _ => case.settings.detect,
+            },
         };
         let wo = case.wo();
         let setup = Setup {

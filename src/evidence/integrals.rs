@@ -4,7 +4,7 @@ use super::draws::CosineDensity;
 use super::meter::{Halt, Meter};
 use super::setup::Setup;
 use crate::bsdf::Direction;
-use crate::sphere::{Cell, Goal, Marker, Partition, Point, STERADIANS, integrate};
+use crate::sphere::{Breaks, Cell, Chart, Goal, Marker, Partition, Point, STERADIANS, integrate_within};
 use serde::{Deserialize, Serialize};
 
 /// Points of the base grid on each side of a hemisphere's square. A peak of
@@ -113,7 +113,8 @@ impl Integrals {
         let cosine = CosineDensity::new(setup);
         let mut value = Vec::new();
         let mut density = Vec::new();
-        let leaf = integrate(partition, pilot, &markers, &goal, |wi, rows| {
+        let breaks = meter.cells(setup.wo)?.map(|native| Breaks::new(&native));
+        let leaf = integrate_within(breaks.as_ref(), partition, pilot, &markers, &goal, |wi, rows| {
             measure(meter, setup, wi, &mut value, &mut density)?;
             for (k, (wi, row)) in wi.iter().zip(rows.chunks_exact_mut(goal.components)).enumerate() {
                 let p = density[k];
@@ -216,6 +217,8 @@ pub fn refracted(wo: Direction, eta: f64) -> Option<Direction> {
 }
 
 fn markers(meter: &Meter, setup: &Setup, partition: &Partition) -> Result<Vec<Marker>, Halt> {
+    // Of equal area, whatever the partition's.
+    let grid = Chart::new(setup.wo.phi());
     let chart = partition.chart();
     let mut directions = expected_directions(meter, setup)?;
     let step = 1.0 / BASE_GRID as f64;
@@ -223,7 +226,7 @@ fn markers(meter: &Meter, setup: &Setup, partition: &Partition) -> Result<Vec<Ma
         for row in 0..BASE_GRID {
             // Off the middles of dyadic cells, where the rule has its own nodes.
             let (u, v) = ((column as f64 + 0.382) * step, (row as f64 + 0.618) * step);
-            directions.push(chart.to_direction([u, v]));
+            directions.push(grid.to_direction([u, v]));
         }
     }
     let (mut value, mut density) = (Vec::new(), Vec::new());
@@ -264,7 +267,9 @@ fn cross_check(
             directions.push(partition.chart().to_direction(cell.at(s, t)));
         }
         meter.pdf(setup.wo, &directions, setup.transport, &mut density)?;
-        totals.push(density.iter().zip(patches).map(|(p, cell)| p * cell.area() * STERADIANS).sum::<f64>());
+        let chart = partition.chart();
+        let terms = density.iter().zip(patches).zip(&directions);
+        totals.push(terms.map(|((p, cell), wi)| p * cell.area() * chart.steradians(*wi)).sum::<f64>());
     }
     let n = totals.len() as f64;
     let mean = totals.iter().sum::<f64>() / n;

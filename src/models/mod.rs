@@ -27,5 +27,6 @@ pub fn all() -> Vec<Model> {
         conductor::model(),
         microfacet::torrance_sparrow::model(),
         blend::model(),
+        crate::measured::lbnl::model(),
     ]
 }

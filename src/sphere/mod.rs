@@ -1,12 +1,14 @@
-//! Numerics on the sphere: equal-area maps, adaptive cubature, partitions
+//! Numerics on the sphere: equal-area and projected maps, adaptive cubature, partitions
 //! into cells of near-equal mass. Usable alone.
 
+mod breaks;
 mod chart;
 mod cubature;
 mod genz_malik;
 mod partition;
 
-pub use chart::{Chart, Point, STERADIANS};
-pub use cubature::{Goal, LeafIntegrals, Marker, integrate};
+pub use breaks::Breaks;
+pub use chart::{Chart, Point, STERADIANS, Shape};
+pub use cubature::{Goal, LeafIntegrals, Marker, integrate, integrate_within};
 pub use genz_malik::{NODES, Rule};
 pub use partition::{Cell, Partition};

@@ -1,6 +1,7 @@
 //! The cell tree: a partition of the sphere into cells of near-equal mass.
 
-use super::chart::{Chart, Point};
+use super::breaks::{Breaks, clipped, cuts};
+use super::chart::{Chart, Point, Shape};
 use crate::bsdf::Direction;
 use serde::{Deserialize, Serialize};
 
@@ -23,6 +24,11 @@ const SIDE_BY_SIDE: usize = 8;
 /// A hemisphere in which the pilot has no points is cut into 2⁴ equal cells.
 const EMPTY_DEPTH: u32 = 4;
 
+/// The nearest place of the grid.
+pub(super) fn snap(at: f64) -> f64 {
+    (at * GRID).round() / GRID
+}
+
 /// A rectangle of the [chart](Chart)'s squares; it never straddles the horizon.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct Cell {
@@ -33,7 +39,7 @@ pub struct Cell {
 }
 
 impl Cell {
-    /// Area in the square; times 2π its solid angle.
+    /// Area in the square; see [`Chart::solid_angle`].
     pub fn area(&self) -> f64 {
         (self.hi[0] - self.lo[0]) * (self.hi[1] - self.lo[1])
     }
@@ -119,6 +125,64 @@ impl Partition {
         tree
     }
 
+    /// As [`build`](Self::build), in the chart of `breaks`, and with leaves that are
+    /// parts of its cells or unions of whole ones, as far as straight cuts go.
+    pub fn build_along(breaks: &Breaks, mut pilot: Vec<Point>, leaves: usize) -> Self {
+        let mut tree = Self::sphere(breaks.chart());
+        let front = partition_points(&mut pilot, |p| p[0] < 1.0);
+        let total = pilot.len().max(1);
+        let (front_points, back_points) = pilot.split_at_mut(front);
+        for (node, points) in [(1, front_points), (2, back_points)] {
+            let cells = clipped(breaks.cells(), &tree.cells[node]);
+            let share = (leaves * points.len()).div_ceil(total).max(1 << EMPTY_DEPTH);
+            tree.split_along(node, &cells, points, share);
+        }
+        tree.number_leaves();
+        tree
+    }
+
+    /// Splits where no cell is crossed, best into halves of equal mass, until a
+    /// leaf is in one cell.
+    fn split_along(&mut self, node: usize, cells: &[Cell], points: &mut [Point], leaves: usize) {
+        if leaves < 2 {
+            return;
+        }
+        let whole = self.cells[node];
+        // Where there are no points, area decides.
+        let weight = |below: usize, area: f64| below as f64 + area / whole.area();
+        let all = weight(points.len(), whole.area());
+        let mut best: Option<(f64, usize, f64)> = None;
+        for axis in 0..2 {
+            let places = cuts(cells, axis);
+            let mut counts = vec![0usize; places.len() + 1];
+            for p in points.iter() {
+                counts[places.partition_point(|at| *at <= p[axis])] += 1;
+            }
+            let mut below = 0;
+            for (at, count) in places.iter().zip(counts) {
+                below += count;
+                let left = weight(below, whole.split(axis, *at)[0].area());
+                let balance = left.min(all - left);
+                let room = at - whole.lo[axis] >= NARROWEST && whole.hi[axis] - at >= NARROWEST;
+                if room && best.is_none_or(|(b, _, _)| balance > b) {
+                    best = Some((balance, axis, *at));
+                }
+            }
+        }
+        let Some((_, axis, at)) = best else {
+            return self.split_at_medians(node, points, leaves);
+        };
+        let child = self.split(node, axis, at);
+        let below = partition_points(points, |p| p[axis] < at);
+        let (left, right) = points.split_at_mut(below);
+        let left_weight = weight(left.len(), self.cells[child].area());
+        let left_leaves = ((leaves as f64 * left_weight / all).round() as usize).clamp(1, leaves - 1);
+        for (k, points, leaves) in [(child, left, left_leaves), (child + 1, right, leaves - left_leaves)] {
+            let inside = clipped(cells, &self.cells[k]);
+            self.split_along(k, &inside, points, leaves);
+        }
+    }
+
     fn sphere(chart: Chart) -> Self {
         let whole = Cell { lo: [0.0, 0.0], hi: [2.0, 1.0] };
         let mut tree = Self {
@@ -149,7 +213,7 @@ impl Partition {
             return;
         }
         let axis = (depth % 2) as usize;
-        let middle = (self.cells[node].middle(axis) * GRID).round() / GRID;
+        let middle = snap(self.cells[node].middle(axis));
         let child = self.split(node, axis, middle);
         self.split_evenly(child, depth - 1);
         self.split_evenly(child + 1, depth - 1);
@@ -170,7 +234,7 @@ impl Partition {
         for axis in [wide, 1 - wide] {
             let half = points.len() / 2;
             let (_, median, _) = points.select_nth_unstable_by(half, |a, b| a[axis].total_cmp(&b[axis]));
-            let at = (median[axis] * GRID).round() / GRID;
+            let at = snap(median[axis]);
             let cell = self.cells[node];
             if at - cell.lo[axis] < NARROWEST || cell.hi[axis] - at < NARROWEST {
                 continue;
@@ -333,12 +397,18 @@ fn partition_points(points: &mut [Point], first: impl Fn(&Point) -> bool) -> usi
     count
 }
 
-/// The saved form: cos and sin of the chart's azimuth, and in preorder −1 for a leaf or 2·at·2⁴⁰ + axis
+/// The saved form: cos and sin of the chart's azimuth, its shape, and in preorder −1 for a leaf or 2·at·2⁴⁰ + axis
 /// for a split.
 #[derive(Serialize, Deserialize)]
 struct Saved {
     x_axis: [f64; 2],
+    #[serde(default, skip_serializing_if = "is_default")]
+    shape: Shape,
     preorder: Vec<i64>,
+}
+
+fn is_default(shape: &Shape) -> bool {
+    *shape == Shape::default()
 }
 
 impl From<Partition> for Saved {
@@ -355,7 +425,7 @@ impl From<Partition> for Saved {
                 }
             }
         }
-        Self { x_axis: tree.chart.x_axis(), preorder }
+        Self { x_axis: tree.chart.x_axis(), shape: tree.chart.shape(), preorder }
     }
 }
 
@@ -363,7 +433,7 @@ impl TryFrom<Saved> for Partition {
     type Error = String;
 
     fn try_from(saved: Saved) -> Result<Self, String> {
-        let mut tree = Self::sphere(Chart::with_x_axis(saved.x_axis));
+        let mut tree = Self::sphere(Chart::with_x_axis(saved.x_axis).shaped(saved.shape));
         let mut open = vec![0usize];
         let mut codes = saved.preorder.iter();
         while let Some(node) = open.pop() {

@@ -1,0 +1,3 @@
+//! Tabulated BSDFs and their file formats.
+
+pub mod lbnl;
