@@ -306,7 +306,8 @@ mod tests {
     fn cells_have_their_solid_angle() {
         for shape in SHAPES {
             let chart = Chart::new(1.0).shaped(shape);
-            for (lo, hi) in [([0.1, 0.2], [0.3, 0.8]), ([0.4, 0.45], [0.9, 0.6]), ([1.25, 0.5], [1.75, 0.9])] {
+            for (lo, hi) in [([0.1, 0.2], [0.3, 0.8]), ([0.4, 0.45], [0.9, 0.6]), ([1.25, 0.5], [1.75, 0.9])]
+            {
                 let cell = Cell { lo, hi };
                 let n = 400;
                 let sum: f64 = (0..n * n)

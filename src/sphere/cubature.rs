@@ -345,7 +345,9 @@ fn evaluate<E>(
                 [row[0], row[1..1 + goal.controlled].iter().sum::<f64>()]
             };
             let longer = u8::from(patch.cell.width(1) > patch.cell.width(0));
-            patch.axis = rule.rougher_axis(|k| steering(k)[0] * stretch[k], |k| steering(k)[1] * stretch[k]).unwrap_or(longer);
+            patch.axis = rule
+                .rougher_axis(|k| steering(k)[0] * stretch[k], |k| steering(k)[1] * stretch[k])
+                .unwrap_or(longer);
             for k in 0..NODES {
                 let s = steering(k);
                 patch.seen = [patch.seen[0].max(s[0]), patch.seen[1].max(s[1])];

@@ -43,11 +43,7 @@ const STANDARD: [(&str, &[f64], &[usize]); 3] = [
         &[0.0, 5.0, 15.0, 25.0, 35.0, 45.0, 55.0, 65.0, 75.0, 90.0],
         &[1, 8, 16, 20, 24, 24, 24, 16, 12],
     ),
-    (
-        "LBNL/Klems Half",
-        &[0.0, 6.5, 19.5, 32.5, 45.5, 58.5, 71.5, 90.0],
-        &[1, 8, 12, 16, 20, 12, 8],
-    ),
+    ("LBNL/Klems Half", &[0.0, 6.5, 19.5, 32.5, 45.5, 58.5, 71.5, 90.0], &[1, 8, 12, 16, 20, 12, 8]),
     ("LBNL/Klems Quarter", &[0.0, 9.0, 27.0, 45.0, 63.0, 90.0], &[1, 8, 12, 12, 8]),
 ];
 
@@ -75,15 +71,13 @@ impl Basis {
                 let found = format!("from {}° to {}°", ring.lower, ring.upper);
                 return Err((k, format!("a ring {found} where one from {reached}° is due")));
             }
-            if ring.patches == 0 {
-                return Err((k, "a ring of 0 patches".into()));
+            if ring.patches == 0 || ring.patches > MOST_PATCHES - patches {
+                let rule = format!("1 to {} are possible there", MOST_PATCHES - patches);
+                return Err((k, format!("a ring of {} patches; {rule}", ring.patches)));
             }
             first.push(patches);
             patches += ring.patches;
             reached = ring.upper;
-            if patches > MOST_PATCHES {
-                return Err((k, format!("more than {MOST_PATCHES} patches")));
-            }
         }
         if !((reached - 90.0f64).abs() <= SAME_ANGLE) {
             return Err((rings.len().max(1) - 1, format!("the rings end at {reached}°, not at 90°")));
@@ -95,9 +89,7 @@ impl Basis {
 
     /// Whether both part the hemisphere in the same way.
     pub fn agrees_with(&self, other: &Self) -> bool {
-        let same = |(a, b): (&Ring, &Ring)| {
-            (a.upper - b.upper).abs() <= SAME_ANGLE && a.patches == b.patches
-        };
+        let same = |(a, b): (&Ring, &Ring)| (a.upper - b.upper).abs() <= SAME_ANGLE && a.patches == b.patches;
         self.rings.len() == other.rings.len() && self.rings.iter().zip(&other.rings).all(same)
     }
 

@@ -33,3 +33,8 @@ pub use read::{read, read_wavelength};
 pub use subject::Measured;
 pub use survey::{Asymmetry, IncidentFlux};
 pub use table::{Side, Table};
+
+#[cfg(test)]
+mod planted_bugs;
+#[cfg(test)]
+mod reader_tests;

@@ -69,9 +69,11 @@ impl<'a, 'i> Tokens<'a, 'i> {
     }
 
     /// The next token, which stays.
-    pub fn peek(&self) -> Result<Token, ReadError> {
-        let mut ahead = Tokens { pieces: self.pieces.clone(), ..*self };
-        ahead.next()
+    pub fn peek(&mut self) -> Result<Token, ReadError> {
+        let here = (self.piece, self.at, self.may_part);
+        let token = self.next();
+        (self.piece, self.at, self.may_part) = here;
+        token
     }
 
     /// The next token.

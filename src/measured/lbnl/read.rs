@@ -35,7 +35,10 @@ pub fn read_wavelength(bytes: &[u8], wavelength: &str) -> Result<Table, ReadErro
     let root = document.root_element();
     if root.tag_name().name() != "WindowElement" {
         let found = root.tag_name().name();
-        return Err(wrong(root, format!("the root is <{found}>; a BSDF of WINDOW starts with <WindowElement>")));
+        return Err(wrong(
+            root,
+            format!("the root is <{found}>; a BSDF of WINDOW starts with <WindowElement>"),
+        ));
     }
     if let Some(kind) = optional_child(root, "FileType")?
         && !same(text(kind), "BSDF")
@@ -143,7 +146,8 @@ fn read_block(
         t if same(t, "Reflection Front") => (false, Side::Back),
         t if same(t, "Reflection Back") => (false, Side::Front),
         t => {
-            let known = "Transmission Front, Transmission Back, Reflection Front and Reflection Back are read";
+            let known =
+                "Transmission Front, Transmission Back, Reflection Front and Reflection Back are read";
             return Err(wrong(direction, format!("WavelengthDataDirection `{t}`; {known}")));
         }
     };
@@ -201,7 +205,7 @@ fn matrix(
         Structure::Rows => (incident.len(), outgoing.len()),
         _ => (outgoing.len(), incident.len()),
     };
-    let mut read = Vec::with_capacity(rows * columns);
+    let mut read = Vec::new();
     loop {
         match tokens.peek()? {
             Token::Value(value) if read.len() < rows * columns => read.push(value),
@@ -216,7 +220,9 @@ fn matrix(
     }
     if read.len() < rows * columns {
         let found = read.len();
-        return Err(tokens.wrong(format!("{found} values where {rows} × {columns} = {} are needed", rows * columns)));
+        return Err(
+            tokens.wrong(format!("{found} values where {rows} × {columns} = {} are needed", rows * columns))
+        );
     }
     let values = match structure {
         Structure::Rows => read,

@@ -35,8 +35,12 @@ pub struct Measured {
     slices: Mutex<HashMap<(Side, usize, usize), Arc<Slice>>>,
     most: OnceLock<String>,
     #[cfg(test)]
-    pub(super) tamper: Option<fn(&mut Slice)>,
+    pub(super) tamper: Option<Tamper>,
 }
+
+/// Plants a bug in the sampler of a direction.
+#[cfg(test)]
+pub(super) type Tamper = Box<dyn Fn(Direction, &mut Slice) + Send + Sync>;
 
 /// The cells of wi for one incident cell.
 pub(super) struct Slice {
@@ -89,7 +93,7 @@ impl Measured {
         Some(slice)
     }
 
-    fn make_slice(&self, from: Side, wo: Direction) -> Slice {
+    pub(super) fn make_slice(&self, from: Side, wo: Direction) -> Slice {
         let mut cells = Vec::new();
         for to in Side::BOTH {
             let right = if to == Side::Front { 0.0 } else { 1.0 };
@@ -109,8 +113,8 @@ impl Measured {
         #[cfg_attr(not(test), expect(unused_mut, reason = "tests plant bugs in it"))]
         let mut slice = Slice { cells, cumulative, flux: sum };
         #[cfg(test)]
-        if let Some(tamper) = self.tamper {
-            tamper(&mut slice);
+        if let Some(tamper) = &self.tamper {
+            tamper(wo, &mut slice);
         }
         slice
     }
@@ -189,13 +193,7 @@ impl Subject for Measured {
         Ok(())
     }
 
-    fn sample(
-        &self,
-        wo: Direction,
-        u: &[f64],
-        _: Transport,
-        out: &mut Samples,
-    ) -> Result<(), SubjectError> {
+    fn sample(&self, wo: Direction, u: &[f64], _: Transport, out: &mut Samples) -> Result<(), SubjectError> {
         let lit = self.slice(wo).zip(self.chart(wo));
         for u in u.chunks_exact(3) {
             let draw = lit.as_ref().and_then(|(slice, chart)| {

@@ -88,7 +88,8 @@ impl Table {
         let mut found = Asymmetry { least: f64::INFINITY, mean: 0.0, most: 0.0, pairs: 0 };
         for i in 0..forth.incident.len() {
             for o in 0..forth.outgoing.len() {
-                let (a, b) = (forth.at(i, o), back.at(back.incident.opposite(o)?, back.outgoing.opposite(i)?));
+                let (a, b) =
+                    (forth.at(i, o), back.at(back.incident.opposite(o)?, back.outgoing.opposite(i)?));
                 if a > FEWEST && b > FEWEST {
                     let error = (a - b).abs() / (a.max(b) + TINY);
                     found.least = found.least.min(error);

@@ -4,9 +4,9 @@ use super::error::ReadError;
 use super::numbers::{Token, Tokens};
 use crate::bsdf::Rectangle;
 
-/// The finest cell is 2⁻¹⁵ of the square's side: finer than the 2⁻⁸ that anything
-/// makes, and a bound of the recursion.
-const DEEPEST: u32 = 15;
+/// The finest cell is 2⁻⁹ of the square's side: finer than what is simulated, and
+/// a bound of the recursion and of the number of incident cells.
+const DEEPEST: u32 = 9;
 
 /// The first coordinate of rank 3 is ½ − sin θ/2 less this (Radiance's `FTINY`),
 /// which keeps the sines of round angles, as of 30°, off the edges of cells.

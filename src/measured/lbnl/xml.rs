@@ -25,7 +25,11 @@ pub fn parse(bytes: &[u8]) -> Result<Document<'_>, ReadError> {
         // The parser's sentence ends with the place.
         let message = e.to_string();
         let message = message.rsplit_once(" at ").map_or(&*message, |(sentence, _)| sentence);
-        ReadError { line: pos.row, column: pos.col, message: format!("this is no well-formed XML: {message}") }
+        ReadError {
+            line: pos.row,
+            column: pos.col,
+            message: format!("this is no well-formed XML: {message}"),
+        }
     })
 }
 
