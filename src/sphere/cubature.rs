@@ -1,6 +1,7 @@
 //! Adaptive cubature over the leaves of a partition.
 
-use super::breaks::{Breaks, clipped, cuts};
+use super::along::within;
+use super::breaks::Breaks;
 use super::chart::Point;
 use super::genz_malik::{NODES, Rule};
 use super::partition::{Cell, Partition};
@@ -83,9 +84,9 @@ impl LeafIntegrals {
 }
 
 /// One cell of the cubature.
-struct Patch {
+pub(super) struct Patch {
     leaf: u32,
-    cell: Cell,
+    pub(super) cell: Cell,
     depth: u32,
     suspicion: u32,
     axis: u8,
@@ -217,49 +218,6 @@ fn first_patches(partition: &Partition, cells: &[Cell], pilot: &[Point], markers
     graded
 }
 
-/// The leaves' patches cut until each lies in one of `cells`.
-fn within(partition: &Partition, cells: &[Cell], of_leaf: Vec<Patch>) -> Vec<Patch> {
-    // The cells of each leaf, found on the way down the tree.
-    let mut cells_of: Vec<Vec<Cell>> = vec![Vec::new(); partition.len()];
-    let mut open = vec![(0, clipped(cells, &partition.node_cell(0)))];
-    let mut at_nodes: Vec<Option<Vec<Cell>>> = vec![None; partition.nodes()];
-    while let Some((node, cells)) = open.pop() {
-        match partition.children(node) {
-            Some(children) => {
-                open.extend(children.map(|child| (child, clipped(&cells, &partition.node_cell(child)))));
-            }
-            None => at_nodes[node] = Some(cells),
-        }
-    }
-    for (leaf, cells) in cells_of.iter_mut().enumerate() {
-        *cells = at_nodes[partition.leaf_node(leaf)].take().unwrap_or_default();
-    }
-    let mut single = Vec::new();
-    let mut open: Vec<_> = of_leaf.into_iter().zip(cells_of).collect();
-    while let Some((patch, cells)) = open.pop() {
-        if cells.len() < 2 {
-            single.push(patch);
-            continue;
-        }
-        let middle = |places: Vec<f64>| places.get(places.len() / 2).copied();
-        let clean = [0, 1].into_iter().find_map(|axis| Some((axis, middle(cuts(&cells, axis))?)));
-        // Where each straight cut crosses cells, along any inner edge.
-        let inner = |axis: usize| {
-            let edge = |c: &Cell| c.lo[axis];
-            cells.iter().map(edge).find(|at| *at > patch.cell.lo[axis]).map(|at| (axis, at))
-        };
-        let Some((axis, at)) = clean.or_else(|| inner(0)).or_else(|| inner(1)) else {
-            single.push(patch);
-            continue;
-        };
-        for half in cut(patch, axis, at) {
-            let inside = clipped(&cells, &half.cell);
-            open.push((half, inside));
-        }
-    }
-    single
-}
-
 /// The axis on which the pilot points span the least share of the patch, if
 /// that is too little.
 fn unfilled_axis(patch: &Patch) -> Option<u8> {
@@ -286,7 +244,7 @@ fn halve(patch: Patch) -> [Patch; 2] {
 }
 
 /// Both parts of a patch, cut at `at` across `axis`.
-fn cut(patch: Patch, axis: usize, at: f64) -> [Patch; 2] {
+pub(super) fn cut(patch: Patch, axis: usize, at: f64) -> [Patch; 2] {
     let (left_pilot, right_pilot) = patch.pilot.into_iter().partition(|p| p[axis] < at);
     let (left_markers, right_markers) = patch.markers.into_iter().partition(|m| m.at[axis] < at);
     let [left, right] = patch.cell.split(axis, at);

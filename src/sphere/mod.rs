@@ -1,6 +1,7 @@
 //! Numerics on the sphere: equal-area and projected maps, adaptive cubature, partitions
 //! into cells of near-equal mass. Usable alone.
 
+mod along;
 mod breaks;
 mod chart;
 mod cubature;

@@ -1,6 +1,5 @@
 //! The cell tree: a partition of the sphere into cells of near-equal mass.
 
-use super::breaks::{Breaks, clipped, cuts};
 use super::chart::{Chart, Point, Shape};
 use crate::bsdf::Direction;
 use serde::{Deserialize, Serialize};
@@ -11,7 +10,7 @@ const GRID: f64 = (1u64 << 40) as f64;
 
 /// The least width of a cell, in steps of the grid: two steps leave room for
 /// a split.
-const NARROWEST: f64 = 2.0 / GRID;
+pub(super) const NARROWEST: f64 = 2.0 / GRID;
 
 /// Where the pilot has fewer points than this, a cell is not split on their
 /// word.
@@ -22,7 +21,7 @@ const FEWEST_POINTS: usize = 16;
 const SIDE_BY_SIDE: usize = 8;
 
 /// A hemisphere in which the pilot has no points is cut into 2⁴ equal cells.
-const EMPTY_DEPTH: u32 = 4;
+pub(super) const EMPTY_DEPTH: u32 = 4;
 
 /// The nearest place of the grid.
 pub(super) fn snap(at: f64) -> f64 {
@@ -125,65 +124,8 @@ impl Partition {
         tree
     }
 
-    /// As [`build`](Self::build), in the chart of `breaks`, and with leaves that are
-    /// parts of its cells or unions of whole ones, as far as straight cuts go.
-    pub fn build_along(breaks: &Breaks, mut pilot: Vec<Point>, leaves: usize) -> Self {
-        let mut tree = Self::sphere(breaks.chart());
-        let front = partition_points(&mut pilot, |p| p[0] < 1.0);
-        let total = pilot.len().max(1);
-        let (front_points, back_points) = pilot.split_at_mut(front);
-        for (node, points) in [(1, front_points), (2, back_points)] {
-            let cells = clipped(breaks.cells(), &tree.cells[node]);
-            let share = (leaves * points.len()).div_ceil(total).max(1 << EMPTY_DEPTH);
-            tree.split_along(node, &cells, points, share);
-        }
-        tree.number_leaves();
-        tree
-    }
-
-    /// Splits where no cell is crossed, best into halves of equal mass, until a
-    /// leaf is in one cell.
-    fn split_along(&mut self, node: usize, cells: &[Cell], points: &mut [Point], leaves: usize) {
-        if leaves < 2 {
-            return;
-        }
-        let whole = self.cells[node];
-        // Where there are no points, area decides.
-        let weight = |below: usize, area: f64| below as f64 + area / whole.area();
-        let all = weight(points.len(), whole.area());
-        let mut best: Option<(f64, usize, f64)> = None;
-        for axis in 0..2 {
-            let places = cuts(cells, axis);
-            let mut counts = vec![0usize; places.len() + 1];
-            for p in points.iter() {
-                counts[places.partition_point(|at| *at <= p[axis])] += 1;
-            }
-            let mut below = 0;
-            for (at, count) in places.iter().zip(counts) {
-                below += count;
-                let left = weight(below, whole.split(axis, *at)[0].area());
-                let balance = left.min(all - left);
-                let room = at - whole.lo[axis] >= NARROWEST && whole.hi[axis] - at >= NARROWEST;
-                if room && best.is_none_or(|(b, _, _)| balance > b) {
-                    best = Some((balance, axis, *at));
-                }
-            }
-        }
-        let Some((_, axis, at)) = best else {
-            return self.split_at_medians(node, points, leaves);
-        };
-        let child = self.split(node, axis, at);
-        let below = partition_points(points, |p| p[axis] < at);
-        let (left, right) = points.split_at_mut(below);
-        let left_weight = weight(left.len(), self.cells[child].area());
-        let left_leaves = ((leaves as f64 * left_weight / all).round() as usize).clamp(1, leaves - 1);
-        for (k, points, leaves) in [(child, left, left_leaves), (child + 1, right, leaves - left_leaves)] {
-            let inside = clipped(cells, &self.cells[k]);
-            self.split_along(k, &inside, points, leaves);
-        }
-    }
-
-    fn sphere(chart: Chart) -> Self {
+    /// The hemispheres, without numbers for their leaves.
+    pub(super) fn sphere(chart: Chart) -> Self {
         let whole = Cell { lo: [0.0, 0.0], hi: [2.0, 1.0] };
         let mut tree = Self {
             chart,
@@ -197,7 +139,8 @@ impl Partition {
         tree
     }
 
-    fn split(&mut self, node: usize, axis: usize, at: f64) -> usize {
+    /// Cuts a leaf; returns the first of both children.
+    pub(super) fn split(&mut self, node: usize, axis: usize, at: f64) -> usize {
         let child = self.nodes.len();
         self.nodes[node] = Node { at, child: child as u32, axis: axis as u32 };
         for cell in self.cells[node].split(axis, at) {
@@ -219,7 +162,7 @@ impl Partition {
         self.split_evenly(child + 1, depth - 1);
     }
 
-    fn split_at_medians(&mut self, node: usize, points: &mut [Point], leaves: usize) {
+    pub(super) fn split_at_medians(&mut self, node: usize, points: &mut [Point], leaves: usize) {
         if leaves < 2 || points.len() < 2 * FEWEST_POINTS {
             return;
         }
@@ -248,7 +191,8 @@ impl Partition {
         }
     }
 
-    fn number_leaves(&mut self) {
+    /// Must follow all cuts.
+    pub(super) fn number_leaves(&mut self) {
         self.leaf_number = vec![u32::MAX; self.nodes.len()];
         self.leaves.clear();
         let mut depth_of = vec![0usize; self.nodes.len()];
@@ -386,7 +330,7 @@ impl Partition {
 }
 
 /// Moves the points for which `first` holds to the front; returns their number.
-fn partition_points(points: &mut [Point], first: impl Fn(&Point) -> bool) -> usize {
+pub(super) fn partition_points(points: &mut [Point], first: impl Fn(&Point) -> bool) -> usize {
     let mut count = 0;
     for k in 0..points.len() {
         if first(&points[k]) {
