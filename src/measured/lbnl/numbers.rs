@@ -77,7 +77,6 @@ impl<'a, 'i> Tokens<'a, 'i> {
     }
 
     /// The next token.
-    #[expect(clippy::should_implement_trait, reason = "it may fail, and ends with a token of its own")]
     pub fn next(&mut self) -> Result<Token, ReadError> {
         loop {
             let Some((_, text)) = self.pieces.get(self.piece) else { return Ok(Token::End) };

@@ -112,10 +112,13 @@ fn standard_bases_cover_the_hemisphere() {
     }
 }
 
-/// One edit of a file, the place that is told and a part of the message.
+/// A file, what is replaced in it and by what, the place that is told and a part of
+/// the message.
+type Mistake = (&'static str, &'static str, &'static str, (u32, u32), &'static str);
+
 #[test]
 fn mistakes_are_told_with_their_place() {
-    let cases: [(&str, &str, &str, (u32, u32), &str); 27] = [
+    let cases: [Mistake; 27] = [
         (MATRIX, "WindowElement", "Window", (2, 1), "the root is <Window>"),
         (MATRIX, "</FileType>", "</File>", (3, 15), "well-formed"),
         (MATRIX, "<FileType>BSDF", "<FileType>Glazing", (3, 1), "a file of `Glazing`"),

@@ -73,7 +73,7 @@ impl Measured {
     /// The chart whose rectangles the cells of wi are, if light comes in at all.
     fn chart(&self, wo: Direction) -> Option<Chart> {
         let from = Side::of(wo)?;
-        self.table.from_side(from).next().map(|(_, d)| d.chart(wo))
+        self.table.scattered(from).next().map(|(_, d)| d.chart(wo))
     }
 
     /// The cells of wi, on both sides.
@@ -127,12 +127,10 @@ impl Measured {
             });
             let most = all.max_by(|a, b| a.1.total().total_cmp(&b.1.total()));
             most.map_or_else(String::new, |(side, flux)| {
-                let (theta, phi) = (flux.wo.theta().to_degrees(), flux.wo.phi().to_degrees());
-                let theta = if side == Side::Front { theta } else { 180.0 - theta };
+                let (theta, phi) = (flux.wo.theta().to_degrees(), flux.wo.phi().to_degrees().rem_euclid(360.0));
+                let (total, patch) = (flux.total(), flux.patch);
                 format!(
-                    "; of all incident patches the most flux, {:.5}, leaves of {side} {}, around θ {theta:.1}°, φ {phi:.0}°",
-                    flux.total(),
-                    flux.patch
+                    "; of all incident patches the most flux, {total:.5}, leaves of {side} {patch}, at --theta {theta:.2} --phi {phi:.1}"
                 )
             })
         })
@@ -209,7 +207,7 @@ impl Subject for Measured {
 
     fn cells(&self, wo: Direction) -> Option<NativeCells> {
         let from = Side::of(wo)?;
-        let (_, first) = self.table.from_side(from).next()?;
+        let (_, first) = self.table.scattered(from).next()?;
         let slice = self.slice(wo)?;
         let notes: String = self.table.notes.iter().map(|note| format!("; {note}")).collect();
         Some(NativeCells {

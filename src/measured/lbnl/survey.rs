@@ -66,7 +66,7 @@ impl Table {
     /// have different incident patches, those of the finer one.
     pub fn incident_fluxes(&self, from: Side) -> Vec<IncidentFlux> {
         let up = Direction::NORMAL;
-        let finest = self.from_side(from).map(|(_, d)| d).max_by_key(|d| d.incident(up).1);
+        let finest = self.scattered(from).map(|(_, d)| d).max_by_key(|d| d.incident(up).1);
         let Some(finest) = finest else { return Vec::new() };
         let of = |cell: usize| {
             let middle = finest.incident_middle(cell);
@@ -110,9 +110,9 @@ impl Table {
     /// of a side and those of both sides, `most` pairs at most.
     pub(super) fn largest_asymmetry(&self, most: usize) -> f64 {
         let mut all: Vec<Direction> = Vec::new();
-        let turning = Side::BOTH.into_iter().flat_map(|s| self.from_side(s)).any(|(_, d)| d.turns());
+        let turning = Side::BOTH.into_iter().flat_map(|s| self.scattered(s)).any(|(_, d)| d.turns());
         for from in Side::BOTH {
-            for (_, d) in self.from_side(from) {
+            for (_, d) in self.scattered(from) {
                 let middles = (0..d.incident(Direction::NORMAL).1).map(|cell| d.incident_middle(cell));
                 all.extend(middles.map(|m| if from == Side::Front { m } else { m.flipped() }));
             }

@@ -74,7 +74,7 @@ impl Table {
     }
 
     /// The distributions of light from `from`, by the side that it goes to.
-    pub(super) fn from_side(&self, from: Side) -> impl Iterator<Item = (Side, &Distribution)> {
+    pub(super) fn scattered(&self, from: Side) -> impl Iterator<Item = (Side, &Distribution)> {
         Side::BOTH.into_iter().filter_map(move |to| Some((to, self.distribution(from, to)?)))
     }
 
