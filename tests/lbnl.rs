@@ -173,3 +173,38 @@ fn reciprocity_is_claimed_by_the_data() {
     assert!(glass.describe().claims.reciprocal);
     assert!(!glass.table().notes.is_empty());
 }
+
+/// Transmission that is missing is the other one with light going backwards, of rank 4
+/// as of matrices; a table of that and of symmetric reflection claims reciprocity,
+/// and the check agrees.
+#[test]
+fn missing_transmission_is_had_backwards() {
+    let text = String::from_utf8(bytes("blind_tree4")).unwrap();
+    let block = text.find("Transmission Back").unwrap();
+    let (from, to) = (
+        text[..block].rfind("<WavelengthData>").unwrap(),
+        block + text[block..].find("</WavelengthData>").unwrap(),
+    );
+    let one_way = format!("{}{}", &text[..from], &text[to + "</WavelengthData>".len()..]);
+    let (whole, half) = (table("blind_tree4"), read(one_way.as_bytes()).unwrap());
+    assert!(half.notes[0].contains("Transmission Back is missing"), "{:?}", half.notes);
+    for row in reference("blind_tree4", "values") {
+        let (wo, wi) = (direction(row[0], row[1]), direction(row[2], row[3]));
+        if wo.z > 0.0 && wi.z < 0.0 {
+            assert_eq!(half.value(wo, wi), whole.value(wi, wo));
+        }
+    }
+    let subject = Arc::new(Measured::new(half));
+    assert!(subject.describe().claims.reciprocal);
+    // Angles on edges of its cells, on their axes, and on the corner at the normal.
+    let mut results =
+        measure(subject.clone(), "one way", &[0.0, 30.0, 75.0, 105.0], 137.0, ClaimsPatch::default());
+    results.extend(measure(subject, "one way", &[30.0, 150.0], 0.0, ClaimsPatch::default()));
+    for result in results {
+        for f in &result.findings {
+            let fine = matches!(f.outcome.verdict, Verdict::Pass | Verdict::Skipped);
+            assert!(fine, "{} {}: {}", result.case.label(), f.check, f.outcome.message);
+            assert!(f.check != "reciprocity" || f.outcome.verdict == Verdict::Pass);
+        }
+    }
+}

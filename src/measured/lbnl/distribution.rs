@@ -15,9 +15,20 @@ pub enum Distribution {
     Tree(Tree),
 }
 
+/// Directions are moved by this before their cell is looked for. Round angles lie on
+/// edges of cells, as all of 30° does on trees, and the normal on a corner; without
+/// it such a direction would be in one cell as it comes and not in the opposite one as
+/// it goes, and a reciprocal table would not be.
+const OFF_EDGE: [f64; 2] = [1.0e-9, 0.6e-9];
+
+/// (x, y) of where light goes.
+fn outgoing_at(wi: Direction) -> [f64; 2] {
+    [wi.x + OFF_EDGE[0], wi.y + OFF_EDGE[1]]
+}
+
 /// (x, y) of the way on of light from `wo`.
 fn way_on(wo: Direction) -> [f64; 2] {
-    [-wo.x, -wo.y]
+    outgoing_at(wo).map(|x| -x)
 }
 
 impl Distribution {
@@ -52,19 +63,19 @@ impl Distribution {
     /// f in sr⁻¹ of light that arrives along `wo` and leaves along `wi`.
     pub fn value(&self, wo: Direction, wi: Direction) -> f64 {
         match self {
-            Self::Matrix(m) => m.at(m.incident.patch(way_on(wo)), m.outgoing.patch([wi.x, wi.y])),
+            Self::Matrix(m) => m.at(m.incident.patch(way_on(wo)), m.outgoing.patch(outgoing_at(wi))),
             Self::Tree(tree) => {
-                let [u, v] = self.chart(wo).to_point(Direction::new(wi.x, wi.y, 1.0));
-                let mut point = [0.0; 4];
+                let [x, y] = outgoing_at(wi);
+                let [u, v] = self.chart(wo).to_point(Direction::new(x, y, 1.0));
+                let mut point = [0.0; 2];
                 let given = self.coordinates(wo, &mut point);
-                point[given..given + 2].copy_from_slice(&[u, v]);
-                tree.at(&point[..given + 2])
+                tree.at(&point[..given], [u, v])
             }
         }
     }
 
     /// The incident coordinates of a tree; returns how many they are.
-    fn coordinates(&self, wo: Direction, point: &mut [f64; 4]) -> usize {
+    fn coordinates(&self, wo: Direction, point: &mut [f64; 2]) -> usize {
         let [x, y] = way_on(wo);
         match self {
             Self::Tree(tree) if tree.rank() == 3 => {
@@ -73,7 +84,7 @@ impl Distribution {
             }
             _ => {
                 let chart = Chart::new(0.0).shaped(Shape::ProjectedConcentric);
-                point[..2].copy_from_slice(&chart.to_point(Direction::new(x, y, 1.0)));
+                *point = chart.to_point(Direction::new(x, y, 1.0));
                 2
             }
         }
@@ -89,7 +100,7 @@ impl Distribution {
                 (0..m.outgoing.len()).flat_map(of).collect()
             }
             Self::Tree(tree) => {
-                let mut point = [0.0; 4];
+                let mut point = [0.0; 2];
                 let given = self.coordinates(wo, &mut point);
                 tree.outgoing(&point[..given])
             }
@@ -104,7 +115,7 @@ impl Distribution {
             Self::Tree(tree) => {
                 let side = 1usize << tree.depth();
                 let cell = |x: f64| ((x * side as f64) as usize).min(side - 1);
-                let mut point = [0.0; 4];
+                let mut point = [0.0; 2];
                 match self.coordinates(wo, &mut point) {
                     1 => (cell(point[0]), side.div_ceil(2)),
                     _ => (cell(point[0]) * side + cell(point[1]), side * side),
@@ -157,7 +168,10 @@ impl Distribution {
 
     /// The same with light going the other way, where it can be had.
     pub fn reversed(&self) -> Option<Self> {
-        self.matrix()?.reversed().map(Self::Matrix)
+        match self {
+            Self::Matrix(m) => m.reversed().map(Self::Matrix),
+            Self::Tree(tree) => tree.backwards().map(Self::Tree),
+        }
     }
 }
 

@@ -162,6 +162,28 @@ fn mistakes_are_told_with_their_place() {
     assert_eq!(read(&latin).unwrap_err().line, MATRIX.lines().count() as u32 + 2);
 }
 
+/// Deep nests, entities and other encodings are refused before they do harm.
+#[test]
+fn hostile_files_are_refused() {
+    let place = TREE.find("{").unwrap();
+    let deep = format!("{}{}{}", &TREE[..place], "{".repeat(100_000), &TREE[place..]);
+    let utf16: Vec<u8> = MATRIX.encode_utf16().flat_map(u16::to_be_bytes).collect();
+    let nested = format!("{}{}", "<a>".repeat(100_000), "</a>".repeat(100_000));
+    for (bytes, part) in [
+        (deep.as_bytes(), "the tree is deeper than 9 levels"),
+        (nested.as_bytes(), "the root is <a>"),
+        (b"<!DOCTYPE x [<!ENTITY a \"b\">]><WindowElement>&a;</WindowElement>", "DTD"),
+        (&utf16, "well-formed"),
+        (b"\xff\xfe<", "byte 0 is not UTF-8 text"),
+        (b"", "root"),
+    ] {
+        let message = read(bytes).unwrap_err().message;
+        assert!(message.contains(part), "{message}");
+    }
+    let marked = [b"\xef\xbb\xbf", MATRIX.as_bytes()].concat();
+    assert_eq!(read(&marked), read(MATRIX.as_bytes()));
+}
+
 /// Windows ends its lines otherwise, and texts may be parted by comments.
 #[test]
 fn places_are_right_whatever_ends_lines() {

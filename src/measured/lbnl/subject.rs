@@ -17,9 +17,9 @@ const RECIPROCAL: f64 = 1e-6;
 /// Pairs that are looked at before that is claimed.
 const PAIRS: usize = 1 << 16;
 
-/// Draws stay this share of its width away from the edges of a cell, where
-/// rounding would decide which value is theirs.
-const OFF_EDGE: f64 = 1e-9;
+/// Draws stay this share of its width away from the edges of a cell: farther than
+/// directions are moved when their cell is looked for.
+const OFF_EDGE: f64 = 1e-6;
 
 /// Slices kept: more than the directions that a case looks along.
 const KEPT: usize = 64;

@@ -31,6 +31,8 @@ pub struct Tree {
     rank: usize,
     root: Node,
     depth: u32,
+    /// Whether light goes the other way than where it was read.
+    reversed: bool,
 }
 
 /// A cell of the outgoing square and its value.
@@ -41,7 +43,7 @@ impl Tree {
     pub fn read(rank: usize, tokens: &mut Tokens) -> Result<Self, ReadError> {
         let (root, depth) = read_node(rank, 0, tokens)?;
         match tokens.peek()? {
-            Token::End => Ok(Self { rank, root, depth }),
+            Token::End => Ok(Self { rank, root, depth, reversed: false }),
             _ => Err(tokens.wrong("more after the end of the tree")),
         }
     }
@@ -56,20 +58,39 @@ impl Tree {
         self.depth
     }
 
-    /// Number of coordinates of the incident direction.
-    pub fn incident_rank(&self) -> usize {
-        self.rank - 2
-    }
-
     /// The first coordinate of rank 3, from the sine of the incident θ.
     pub fn radial(sin_theta: f64) -> f64 {
         (0.5 - OFF_EDGE - 0.5 * sin_theta).max(0.0)
     }
 
-    /// The value at a point.
-    pub fn at(&self, point: &[f64]) -> f64 {
+    /// The same scattering with light going the other way: f(−out, −in), so that the
+    /// squares change places and are turned about their middles. Not of rank 3, whose
+    /// outgoing cells would be no rectangles.
+    pub fn backwards(&self) -> Option<Self> {
+        (self.rank == 4).then(|| Self { reversed: !self.reversed, ..self.clone() })
+    }
+
+    /// The dimensions of the incident coordinates, and those of the outgoing ones.
+    fn dimensions(&self) -> (&'static [usize], [usize; 2]) {
+        match (self.rank, self.reversed) {
+            (3, _) => (&[0], [1, 2]),
+            (_, false) => (&[0, 1], [2, 3]),
+            (_, true) => (&[2, 3], [0, 1]),
+        }
+    }
+
+    /// A coordinate of the tree as it was read.
+    fn as_read(&self, x: f64) -> f64 {
+        if self.reversed { 1.0 - x } else { x }
+    }
+
+    /// The value at an incident and an outgoing point.
+    pub fn at(&self, incident: &[f64], outgoing: [f64; 2]) -> f64 {
+        let (given, free) = self.dimensions();
         let mut local = [0.0; 4];
-        local[..self.rank].copy_from_slice(point);
+        for (k, x) in given.iter().zip(incident).chain(free.iter().zip(&outgoing)) {
+            local[*k] = self.as_read(*x);
+        }
         let local = &mut local[..self.rank];
         let mut node = &self.root;
         loop {
@@ -77,16 +98,12 @@ impl Tree {
                 Node::Branch(parts) => {
                     let mut part = 0;
                     for (k, x) in local.iter_mut().enumerate() {
-                        let upper = *x >= 0.5;
-                        part |= usize::from(upper) << k;
-                        *x = 2.0 * *x - if upper { 1.0 } else { 0.0 };
+                        part |= descend(x) << k;
                     }
                     node = &parts[part];
                 }
                 Node::Grid { log2, values } => {
-                    let side = 1usize << log2;
-                    let cell = |x: f64| ((x * side as f64) as usize).min(side - 1);
-                    return values[local.iter().fold(0, |index, x| index * side + cell(*x))];
+                    return values[local.iter().fold(0, |index, x| (index << log2) + cell(*x, *log2))];
                 }
             }
         }
@@ -96,40 +113,59 @@ impl Tree {
     pub fn outgoing(&self, incident: &[f64]) -> Vec<Leaf> {
         let mut leaves = Vec::new();
         let mut local = [0.0; 2];
-        local[..incident.len()].copy_from_slice(incident);
+        local.iter_mut().zip(incident).for_each(|(l, x)| *l = self.as_read(*x));
         self.collect(&self.root, local, [0.0; 2], 1.0, &mut leaves);
+        if self.reversed {
+            for (r, _) in &mut leaves {
+                *r = Rectangle { lo: r.hi.map(|x| 1.0 - x), hi: r.lo.map(|x| 1.0 - x) };
+            }
+        }
         leaves
     }
 
     fn collect(&self, node: &Node, mut local: [f64; 2], lo: [f64; 2], size: f64, leaves: &mut Vec<Leaf>) {
-        let given = self.incident_rank();
+        let (given, free) = self.dimensions();
         match node {
             Node::Branch(parts) => {
                 let mut part = 0;
-                for (k, x) in local[..given].iter_mut().enumerate() {
-                    let upper = *x >= 0.5;
-                    part |= usize::from(upper) << k;
-                    *x = 2.0 * *x - if upper { 1.0 } else { 0.0 };
+                for (k, x) in given.iter().zip(&mut local) {
+                    part |= descend(x) << k;
                 }
                 let half = 0.5 * size;
-                for free in 0..4 {
-                    let at = [lo[0] + half * f64::from(free & 1), lo[1] + half * f64::from(free >> 1)];
-                    self.collect(&parts[part | (free as usize) << given], local, at, half, leaves);
+                for (i, j) in [(0, 0), (0, 1), (1, 0), (1, 1)] {
+                    let at = [lo[0] + half * i as f64, lo[1] + half * j as f64];
+                    self.collect(&parts[part | i << free[0] | j << free[1]], local, at, half, leaves);
                 }
             }
             Node::Grid { log2, values } => {
                 let side = 1usize << log2;
-                let cell = |x: f64| ((x * side as f64) as usize).min(side - 1);
-                let first = local[..given].iter().fold(0, |index, x| index * side + cell(*x)) * side * side;
                 let step = size / side as f64;
-                for (k, value) in values[first..first + side * side].iter().enumerate() {
+                let mut index = [0; 4];
+                for (k, x) in given.iter().zip(local) {
+                    index[*k] = cell(x, *log2);
+                }
+                for (i, j) in (0..side).flat_map(|i| (0..side).map(move |j| (i, j))) {
+                    (index[free[0]], index[free[1]]) = (i, j);
+                    let value = values[index[..self.rank].iter().fold(0, |sum, k| (sum << log2) + k)];
                     let corner = |i: usize, j: usize| [lo[0] + step * i as f64, lo[1] + step * j as f64];
-                    let (i, j) = (k / side, k % side);
-                    leaves.push((Rectangle { lo: corner(i, j), hi: corner(i + 1, j + 1) }, *value));
+                    leaves.push((Rectangle { lo: corner(i, j), hi: corner(i + 1, j + 1) }, value));
                 }
             }
         }
     }
+}
+
+/// Which half `x` is in, to which it is stretched.
+fn descend(x: &mut f64) -> usize {
+    let upper = *x >= 0.5;
+    *x = 2.0 * *x - if upper { 1.0 } else { 0.0 };
+    usize::from(upper)
+}
+
+/// Which of 2^log2 cells `x` is in.
+fn cell(x: f64, log2: u32) -> usize {
+    let side = 1usize << log2;
+    ((x * side as f64) as usize).min(side - 1)
 }
 
 /// A node and the depth of what is below it.
