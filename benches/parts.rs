@@ -2,7 +2,7 @@
 
 use criterion::{BatchSize, Criterion, Throughput, criterion_group, criterion_main};
 use gonio::bsdf::{Samples, Spectrum, Subject, Transport};
-use gonio::measured::{Interpolation, MerlTable, Resolution, Rgl, read};
+use gonio::measured::{MerlTable, Reading, Resolution, Rgl, read};
 use gonio::models::microfacet::{Distribution, Fresnel, Masking, NormalSampling, Roughness, TorranceSparrow};
 use gonio::sphere::{Chart, Partition, Point};
 use gonio::statistics::noncentral;
@@ -56,8 +56,8 @@ fn files(criterion: &mut Criterion) {
     let rgl = Rgl::bake("grey", &[], 0.5, &Resolution::default(), |_, _| Spectrum::uniform(3, 0.2));
     let mut group = criterion.benchmark_group("open");
     group.sample_size(10);
-    group.bench_function("MERL", |b| b.iter(|| read(&merl, Interpolation::Linear).expect("a table")));
-    group.bench_function("RGL", |b| b.iter(|| read(&rgl, Interpolation::Linear).expect("a table")));
+    group.bench_function("MERL", |b| b.iter(|| read(&merl, &Reading::default()).expect("a table")));
+    group.bench_function("RGL", |b| b.iter(|| read(&rgl, &Reading::default()).expect("a table")));
     group.finish();
 }
 

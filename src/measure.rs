@@ -1,6 +1,6 @@
 //! A BSDF measured from a unit test or another program.
 
-use crate::bsdf::{Description, Direction, Samples, Subject, SubjectError, Transport};
+use crate::bsdf::{Description, Direction, NativeCells, Samples, Subject, SubjectError, Transport};
 use crate::checks::Verdict;
 use crate::engine::{self, Options, Results};
 use crate::registry::Parameters;
@@ -57,6 +57,10 @@ impl<S: Subject> Subject for Lent<'_, S> {
 
     fn hints(&self, wo: Direction) -> Vec<Direction> {
         self.0.hints(wo)
+    }
+
+    fn cells(&self, wo: Direction) -> Option<NativeCells> {
+        self.0.cells(wo)
     }
 }
 

@@ -7,7 +7,7 @@ use gonio::bsdf::{Description, Direction, Samples, Spectrum, Subject, SubjectErr
 use gonio::checks::Verdict;
 use gonio::engine::{CaseResult, Options, run};
 use gonio::evidence::Company;
-use gonio::measured::{HalfDifference, Interpolation, MerlTable, Resolution, Rgl, read};
+use gonio::measured::{HalfDifference, Interpolation, MerlTable, Reading, Resolution, Rgl, read};
 use gonio::registry::Registry;
 use gonio::suite::{Case, ClaimsPatch, Plan, Settings};
 use std::f64::consts::{FRAC_PI_2, PI};
@@ -45,8 +45,12 @@ fn rgl(name: &str, alpha: f64, resolution: &Resolution) -> Vec<u8> {
     Rgl::bake(name, &[], alpha, resolution, |wo, wi| Spectrum::from(&value(&*subject, wo, wi)[..]))
 }
 
+fn nearest_reading() -> Reading {
+    Reading { interpolation: Interpolation::Nearest, ..Reading::default() }
+}
+
 fn opened(bytes: &[u8]) -> Arc<dyn Subject> {
-    read(bytes, Interpolation::Linear).unwrap()
+    read(bytes, &Reading::default()).unwrap()
 }
 
 fn case(name: &str, subject: Arc<dyn Subject>, theta: f64, checks: &[&str]) -> Case<'static> {
@@ -93,7 +97,7 @@ const THETA: [f64; 6] = [0.0, 30.0, 60.0, 75.0, 85.0, 89.0];
 fn correct_files_pass_every_check_that_they_claim() {
     let files = [
         ("merl glossy", opened(glossy())),
-        ("merl nearest", read(glossy(), Interpolation::Nearest).unwrap()),
+        ("merl nearest", read(glossy(), &nearest_reading()).unwrap()),
         ("merl diffuse", opened(&merl(DIFFUSE))),
         ("rgl glossy", opened(&rgl(GLOSSY, 0.2, &Resolution::default()))),
         ("rgl diffuse", opened(&rgl(DIFFUSE, 0.8, &Resolution::default()))),
@@ -160,7 +164,7 @@ fn difference(table: &dyn Subject, name: &str, most: f64) -> [f64; 2] {
 fn files_reproduce_their_model_within_their_resolution() {
     // MERL's cells are 1° wide in θd and φd; θh's are 2° at 60°. In RGL's polar
     // coordinates the first patch of 64 is 11° wide where D is.
-    let nearest = read(glossy(), Interpolation::Nearest).unwrap();
+    let nearest = read(glossy(), &nearest_reading()).unwrap();
     let rgl_diffuse = opened(&rgl(DIFFUSE, 0.8, &Resolution::default()));
     let rgl_glossy = opened(&rgl(GLOSSY, 0.2, &Resolution::default()));
     for (name, table, of, most, worst, rms) in [
@@ -351,7 +355,7 @@ fn scattered_holes_raise_no_false_alarm() {
 
 #[test]
 fn bad_files_are_told_with_place_and_values() {
-    let error = |bytes: &[u8]| read(bytes, Interpolation::Linear).err().expect("an error").to_string();
+    let error = |bytes: &[u8]| read(bytes, &Reading::default()).err().expect("an error").to_string();
     let mut swapped = glossy()[..12].to_vec();
     for four in swapped.chunks_exact_mut(4) {
         four.reverse();

@@ -3,6 +3,7 @@
 //! `wi` is sampled, `eval` is f in sr⁻¹ without the cosine, `pdf` is per
 //! steradian.
 
+mod cells;
 mod claims;
 mod description;
 mod direction;
@@ -10,6 +11,7 @@ mod sample;
 mod spectrum;
 mod subject;
 
+pub use cells::{NativeCells, Projection, Rectangle};
 pub use claims::{Claims, Cosine, OffSupport, RandomNumbers, Transport, TransportModes};
 pub use description::{ByConstruction, Description, Has, Precision, Table};
 pub use direction::Direction;

@@ -1,7 +1,7 @@
 //! The two interfaces: [`Bsdf`] is what an author writes, [`Subject`] what the
 //! harness calls.
 
-use super::{Description, Direction, Sample, Samples, Spectrum, Transport};
+use super::{Description, Direction, NativeCells, Sample, Samples, Spectrum, Transport};
 
 /// What a material author implements. One direction at a time, easy to write.
 ///
@@ -21,6 +21,11 @@ pub trait Bsdf: Send + Sync {
     /// looked at anyway.
     fn hints(&self, _wo: Direction) -> Vec<Direction> {
         Vec::new()
+    }
+    /// The cells of a table, for directions wi given `wo`; `None` where eval has
+    /// no jumps.
+    fn cells(&self, _wo: Direction) -> Option<NativeCells> {
+        None
     }
 }
 
@@ -57,6 +62,10 @@ pub trait Subject: Send + Sync {
     /// As [`Bsdf::hints`].
     fn hints(&self, _wo: Direction) -> Vec<Direction> {
         Vec::new()
+    }
+    /// As [`Bsdf::cells`].
+    fn cells(&self, _wo: Direction) -> Option<NativeCells> {
+        None
     }
 }
 
@@ -164,5 +173,9 @@ impl<B: Bsdf> Subject for B {
 
     fn hints(&self, wo: Direction) -> Vec<Direction> {
         Bsdf::hints(self, wo)
+    }
+
+    fn cells(&self, wo: Direction) -> Option<NativeCells> {
+        Bsdf::cells(self, wo)
     }
 }

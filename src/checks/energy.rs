@@ -2,7 +2,7 @@
 
 use super::outcome::{Check, Effect, Judgement, Outcome, Terms, Verdict, needs_determinism, needs_functions};
 use crate::bsdf::{Description, Precision};
-use crate::evidence::{Evidence, Measurement};
+use crate::evidence::{Evidence, Measurement, Place};
 
 /// ∫s f|cos θi| + Σ s P_k w_k ≤ 1 for every channel, with the flux factor s =
 /// (η_i/η_o)² of transmission in radiance mode.
@@ -76,6 +76,8 @@ impl Check for Energy {
         }
         let Some((channel, flux, error)) = flux(evidence, false) else { return Judgement::Missing };
         let tolerance = tolerance(evidence.description.precision);
+        // A table names the patch, and where its largest sum is.
+        let given = evidence.given.as_ref().map_or_else(String::new, |given| format!(" ({given})"));
         let effect =
             Effect::interval("flux − 1", (flux - 1.0, flux - 1.0 - error, flux - 1.0 + error), tolerance);
         let missing = match evidence.description.table {
@@ -89,12 +91,13 @@ impl Check for Energy {
             effect: Some(effect),
             channel: Some(channel),
             detection_limit: Some(tolerance + error),
-            ..Outcome::new(Verdict::Pass, format!("flux {flux:.5} ≤ 1{missing}"))
+            ..Outcome::new(Verdict::Pass, format!("flux {flux:.5} ≤ 1{given}{missing}"))
         };
         if flux - error > 1.0 + tolerance {
             let name = &evidence.description.channels[channel];
-            let message = format!("flux {flux:.5} of channel {name} leaves where 1 arrives{missing}");
-            return Outcome { verdict: Verdict::Fail, message, ..outcome }.into();
+            let message = format!("flux {flux:.5} of channel {name} leaves where 1 arrives{given}{missing}");
+            let worst = Some(Place { wo: evidence.wo, ..Place::default() }.value("flux", flux));
+            return Outcome { verdict: Verdict::Fail, message, worst, ..outcome }.into();
         }
         outcome.into()
     }

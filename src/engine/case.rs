@@ -22,7 +22,8 @@ const LOOK_FACTOR: u64 = 4;
 const CONFIRMATION: [u64; 4] = [1, 2, 4, 8];
 
 /// RMS relative cell error that counts as wrong where the suite does not say
-/// (METHOD §3): what a textbook implementation in this precision reaches.
+/// (METHOD §3): what a textbook implementation in this precision reaches. A table
+/// that is drawn from exactly has no more of it.
 fn default_tolerance(precision: Precision) -> f64 {
     match precision {
         Precision::F64 => 3e-3,

@@ -150,7 +150,7 @@ pub fn rotations(meter: &Meter, setup: &Setup, pilot: &Pilot) -> Result<Tally, H
     const ANGLES: usize = 8;
     const ROWS: usize = 64;
     let mut tally = Tally::new(setup.tolerance());
-    let wi = probes::directions(setup, pilot, ROWS);
+    let wi = probes::off_edges(meter, setup, probes::directions(setup, pilot, ROWS))?;
     let has = meter.description.has;
     let (mut value, mut density) = (Vec::new(), Vec::new());
     let (mut turned_value, mut turned_density) = (Vec::new(), Vec::new());

@@ -11,7 +11,7 @@ use super::setup::Setup;
 use super::tally::Tally;
 use super::variations::{Comparison, Variant, Variation, two_sided};
 use crate::bsdf::{Claims, Cosine, Description, Direction, Subject, SubjectError, Transport};
-use crate::sphere::{Chart, Partition, Point};
+use crate::sphere::{Breaks, Chart, Partition, Point};
 use serde::{Deserialize, Serialize};
 use std::sync::Arc;
 
@@ -99,6 +99,9 @@ pub struct Evidence {
     pub variations: Option<Vec<Variation>>,
     /// Front and back of a two-sided subject.
     pub two_sided: Option<Tally>,
+    /// What a table says that wo lies in.
+    #[serde(default, skip_serializing_if = "Option::is_none")]
+    pub given: Option<String>,
     /// The cells.
     pub partition: Option<Partition>,
     /// Integrals over the cells.
@@ -150,6 +153,7 @@ impl<'a> Gatherer<'a> {
             jacobian: None,
             variations: None,
             two_sided: None,
+            given: None,
             partition: None,
             integrals: None,
             draws: Vec::new(),
@@ -296,9 +300,15 @@ impl<'a> Gatherer<'a> {
     }
 
     fn integrate(&mut self, draws: u64) -> Result<(), Halt> {
-        let chart = Chart::new(self.setup.wo.phi());
+        let native = self.meter.cells(self.setup.wo)?;
+        let breaks = native.as_ref().map(Breaks::new);
+        let chart = breaks.as_ref().map_or_else(|| Chart::new(self.setup.wo.phi()), Breaks::chart);
         let pilot = self.pilot_points(&chart);
-        let mut partition = Partition::build(chart, pilot.clone(), LEAVES);
+        let mut partition = match &breaks {
+            Some(breaks) => Partition::build_along(breaks, pilot.clone(), LEAVES),
+            None => Partition::build(chart, pilot.clone(), LEAVES),
+        };
+        self.evidence.given = native.map(|native| native.given);
         let gather = |partition: &Partition| {
             Integrals::gather(&self.meter, &self.setup, partition, &pilot, draws, MOST_EVALUATIONS)
         };

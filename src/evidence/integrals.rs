@@ -4,7 +4,7 @@ use super::draws::CosineDensity;
 use super::meter::{Halt, Meter};
 use super::setup::Setup;
 use crate::bsdf::Direction;
-use crate::sphere::{Cell, Goal, Marker, Partition, Point, STERADIANS, integrate};
+use crate::sphere::{Breaks, Cell, Chart, Goal, Marker, Partition, Point, STERADIANS, integrate_within};
 use serde::{Deserialize, Serialize};
 
 /// Points of the base grid on each side of a hemisphere's square. A peak of
@@ -117,7 +117,8 @@ impl Integrals {
         let cosine = CosineDensity::new(setup);
         let mut value = Vec::new();
         let mut density = Vec::new();
-        let leaf = integrate(partition, pilot, &markers, &goal, |wi, rows| {
+        let breaks = meter.cells(setup.wo)?.map(|native| Breaks::new(&native));
+        let leaf = integrate_within(breaks.as_ref(), partition, pilot, &markers, &goal, |wi, rows| {
             measure(meter, setup, wi, &mut value, &mut density)?;
             for (k, (wi, row)) in wi.iter().zip(rows.chunks_exact_mut(goal.components)).enumerate() {
                 let p = density[k];
@@ -228,6 +229,8 @@ fn markers(
     partition: &Partition,
     pilot: &[Point],
 ) -> Result<Vec<Marker>, Halt> {
+    // Of equal area, whatever the partition's.
+    let grid = Chart::new(setup.wo.phi());
     let chart = partition.chart();
     let mut directions = expected_directions(meter, setup)?;
     directions.extend(pilot.iter().map(|p| chart.to_direction(*p)));
@@ -236,7 +239,7 @@ fn markers(
         for row in 0..BASE_GRID {
             // Off the middles of dyadic cells, where the rule has its own nodes.
             let (u, v) = ((column as f64 + 0.382) * step, (row as f64 + 0.618) * step);
-            directions.push(chart.to_direction([u, v]));
+            directions.push(grid.to_direction([u, v]));
         }
     }
     let (mut value, mut density) = (Vec::new(), Vec::new());
@@ -248,7 +251,7 @@ fn markers(
         .map(|(k, wi)| Marker {
             at: chart.to_point(*wi),
             // The distance at which the sampler's next point is to be expected.
-            reach: 0.5 / (density[k] * STERADIANS * pilot.len().max(1) as f64).sqrt().max(1e3),
+            reach: 0.5 / (density[k] * chart.steradians(*wi) * pilot.len().max(1) as f64).sqrt().max(1e3),
             density: density[k],
             value: value[k * channels..][..channels].iter().sum::<f64>() * wi.abs_cos_theta(),
         })
@@ -279,7 +282,9 @@ fn cross_check(
             directions.push(partition.chart().to_direction(cell.at(s, t)));
         }
         meter.pdf(setup.wo, &directions, setup.transport, &mut density)?;
-        totals.push(density.iter().zip(patches).map(|(p, cell)| p * cell.area() * STERADIANS).sum::<f64>());
+        let chart = partition.chart();
+        let terms = density.iter().zip(patches).zip(&directions);
+        totals.push(terms.map(|((p, cell), wi)| p * cell.area() * chart.steradians(*wi)).sum::<f64>());
     }
     let n = totals.len() as f64;
     let mean = totals.iter().sum::<f64>() / n;

@@ -4,7 +4,7 @@
 use super::tally::{Place, Tally};
 use crate::bsdf::MAX_CHANNELS;
 use crate::bsdf::{
-    Cosine, Description, Direction, Lobe, Precision, Samples, Subject, SubjectError, Transport,
+    Cosine, Description, Direction, Lobe, NativeCells, Precision, Samples, Subject, SubjectError, Transport,
 };
 use schemars::JsonSchema;
 use serde::{Deserialize, Serialize};
@@ -205,6 +205,11 @@ impl<'a> Meter<'a> {
     /// Directions of narrow peaks that the subject names.
     pub fn hints(&self, wo: Direction) -> Result<Vec<Direction>, Halt> {
         self.call("hints", || Ok(self.subject.hints(wo)))
+    }
+
+    /// The cells of a table, given `wo`.
+    pub fn cells(&self, wo: Direction) -> Result<Option<NativeCells>, Halt> {
+        self.call("cells", || Ok(self.subject.cells(wo)))
     }
 
     fn call<T>(

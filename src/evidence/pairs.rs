@@ -62,7 +62,7 @@ impl Pairs {
             discrete_rescaled: Tally::new(setup.tolerance()),
             ..Self::default()
         };
-        let wi = probes::directions(setup, pilot, SPREAD);
+        let wi = probes::off_edges(meter, setup, probes::directions(setup, pilot, SPREAD))?;
         let exchanges = exchange(meter, setup, &wi)?;
         let mut order: Vec<usize> = (0..wi.len()).collect();
         for (wi, e) in wi.iter().zip(&exchanges) {

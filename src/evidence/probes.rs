@@ -1,9 +1,24 @@
 //! Directions at which identities between pairs are tried.
 
+use super::meter::{Halt, Meter};
 use super::samples::Pilot;
 use super::setup::Setup;
 use crate::bsdf::Direction;
-use crate::sphere::Chart;
+use crate::sphere::{Breaks, Chart};
+
+/// So near to a jump, in units of a square's side, rounding of a turned or
+/// exchanged direction decides on which side it falls.
+const EDGE: f64 = 1e-9;
+
+/// Those of `wi` at which identities between pairs can be expected of a table: not
+/// on the edge of a cell, where the mirror direction of an isotropic one lies.
+pub fn off_edges(meter: &Meter, setup: &Setup, mut wi: Vec<Direction>) -> Result<Vec<Direction>, Halt> {
+    if let Some(native) = meter.cells(setup.wo)? {
+        let breaks = Breaks::new(&native);
+        wi.retain(|wi| !breaks.is_edge(*wi, EDGE));
+    }
+    Ok(wi)
+}
 
 /// `spread` directions that cover every side where light may leave (scrambled
 /// Sobol points of an equal-area map), as many drawn by the sampler (uniform

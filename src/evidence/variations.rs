@@ -214,7 +214,7 @@ fn limit(meter: &Meter, setup: &Setup, role: Role, value: &str) -> Result<Limit,
 /// the flipped pair.
 pub fn two_sided(meter: &Meter, setup: &Setup, pilot: &Pilot) -> Result<Tally, Halt> {
     let mut tally = Tally::new(setup.tolerance());
-    let wi = probes::directions(setup, pilot, ROWS);
+    let wi = probes::off_edges(meter, setup, probes::directions(setup, pilot, ROWS))?;
     let flipped: Vec<Direction> = wi.iter().map(|w| w.flipped()).collect();
     let (mut a, mut b) = (Vec::new(), Vec::new());
     if meter.description.has.eval {
@@ -316,7 +316,7 @@ impl Comparison {
             found.table = Some(Resemblance::of(setup, &wi, &a, &b));
             return Ok(found);
         }
-        let wi = probes::directions(setup, pilot, 4 * ROWS);
+        let wi = probes::off_edges(meter, setup, probes::directions(setup, pilot, 4 * ROWS))?;
         if meter.description.has.eval && other.description.has.eval {
             meter.eval(setup.wo, &wi, setup.transport, &mut a)?;
             other.eval(setup.wo, &wi, setup.transport, &mut b)?;

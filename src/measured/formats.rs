@@ -110,7 +110,7 @@ impl Format {
 }
 
 /// The formats that are read, for messages.
-pub(super) const READ: &str = "MERL .binary and RGL tensor .bsdf";
+pub(super) const READ: &str = "MERL .binary, RGL tensor .bsdf and WINDOW XML (Klems, tensor tree)";
 
 #[cfg(test)]
 mod tests {

@@ -2,13 +2,15 @@
 //!
 //! [`open`] looks at what a file contains, never at its name, validates all of
 //! it, and gives a subject. MERL tables have no sampler of their own and get
-//! one ([`IsotropicSampler`]); RGL files bring theirs.
+//! one ([`IsotropicSampler`]); RGL files bring theirs, and tables of WINDOW are
+//! drawn from exactly ([`lbnl`]).
 
 mod bytes;
 mod formats;
 #[cfg(test)]
 mod fuzz;
 mod half_difference;
+pub mod lbnl;
 mod merl;
 mod merl_file;
 mod open;
@@ -24,7 +26,7 @@ pub use bytes::FormatError;
 pub use formats::Format;
 pub use half_difference::HalfDifference;
 pub use merl::{Interpolation, Merl, MerlTable};
-pub use open::{ContentError, OpenError, open, read};
+pub use open::{ContentError, OpenError, Reading, open, read};
 pub use per_wo::{PerWo, Reflector};
 pub use rgl::Rgl;
 pub use rgl_bake::Resolution;

@@ -2,6 +2,7 @@
 
 use super::bytes::FormatError;
 use super::formats::{Format, READ};
+use super::lbnl;
 use super::merl::{Interpolation, Merl, MerlTable};
 use super::per_wo::PerWo;
 use super::rgl::Rgl;
@@ -46,33 +47,52 @@ pub enum ContentError {
     /// A mistake at a place.
     #[error(transparent)]
     Format(#[from] FormatError),
+    /// A mistake in XML, at its line and column.
+    #[error(transparent)]
+    Xml(#[from] lbnl::ReadError),
     /// How to read it was asked for, and it can only be read in one way.
     #[error("only MERL tables can be read with interpolation = nearest")]
     Interpolation,
 }
 
-/// Opens a measured file of any format that gonio reads, which its content
-/// tells. `interpolation` is how a MERL table is read; other formats say
-/// themselves how.
-pub fn open(path: &Path, interpolation: Interpolation) -> Result<Arc<dyn Subject>, OpenError> {
+/// How a file is read where it can be read in several ways.
+#[derive(Clone, Debug)]
+pub struct Reading {
+    /// Of a MERL table.
+    pub interpolation: Interpolation,
+    /// The band of a WINDOW file, as it names it (upper or lower case).
+    pub wavelength: String,
+}
+
+impl Default for Reading {
+    fn default() -> Self {
+        Self { interpolation: Interpolation::Linear, wavelength: "visible".into() }
+    }
+}
+
+/// Opens a measured file of any format that gonio reads, which its content tells.
+pub fn open(path: &Path, reading: &Reading) -> Result<Arc<dyn Subject>, OpenError> {
     let shown = || path.display().to_string();
     let bytes = std::fs::read(path).map_err(|why| match why.kind() {
         std::io::ErrorKind::NotFound => OpenError::Missing(shown()),
         _ => OpenError::Unreadable { path: shown(), why },
     })?;
-    read(&bytes, interpolation).map_err(|error| OpenError::Content { path: shown(), error })
+    read(&bytes, reading).map_err(|error| OpenError::Content { path: shown(), error })
 }
 
 /// As [`open`], of the content of a file.
-pub fn read(bytes: &[u8], interpolation: Interpolation) -> Result<Arc<dyn Subject>, ContentError> {
+pub fn read(bytes: &[u8], reading: &Reading) -> Result<Arc<dyn Subject>, ContentError> {
     let format = Format::of(bytes);
-    if interpolation == Interpolation::Nearest && matches!(format, Format::Tensor | Format::WindowXml) {
+    let nearest = reading.interpolation == Interpolation::Nearest;
+    if nearest && matches!(format, Format::Tensor | Format::WindowXml) {
         return Err(ContentError::Interpolation);
     }
     Ok(match format {
-        Format::Merl => Arc::new(PerWo(Merl::new(MerlTable::read(bytes)?, interpolation))),
+        Format::Merl => Arc::new(PerWo(Merl::new(MerlTable::read(bytes)?, reading.interpolation))),
         Format::Tensor => Arc::new(PerWo(Rgl::read(bytes)?)),
-        Format::WindowXml => return Err(ContentError::Unread("LBNL/WINDOW BSDF XML")),
+        Format::WindowXml => {
+            Arc::new(lbnl::Measured::new(lbnl::read_wavelength(bytes, &reading.wavelength)?))
+        }
         Format::Other(name) => return Err(ContentError::Unread(name)),
         Format::Unknown => return Err(ContentError::Unknown(beginning(bytes))),
     })
@@ -93,16 +113,19 @@ fn beginning(bytes: &[u8]) -> String {
 pub(crate) fn model() -> Model {
     Model::dynamic(
         "measured",
-        "a measured file: MERL .binary or RGL tensor .bsdf, told by its content",
+        "a measured file: MERL .binary, RGL tensor .bsdf or WINDOW XML, told by its content",
         |p| {
             let interpolation = match p.text("interpolation") {
                 "nearest" => Interpolation::Nearest,
                 _ => Interpolation::Linear,
             };
-            open(Path::new(p.text("file")), interpolation).map_err(|e| e.to_string())
+            let reading = Reading { interpolation, wavelength: p.text("wavelength").into() };
+            open(Path::new(p.text("file")), &reading).map_err(|e| e.to_string())
         },
     )
     .file("file", "the path of the measured file")
     .choice("interpolation", &["linear", "nearest"], "how a MERL table is read between its nodes")
+    .idle()
+    .choice("wavelength", &["visible", "solar", "nir"], "which band of a WINDOW file")
     .idle()
 }

@@ -1,8 +1,8 @@
 //! Two other subjects, side by side.
 
 use crate::bsdf::{
-    Claims, Cosine, Description, Direction, Has, Lobe, OffSupport, Precision, RandomNumbers, Samples,
-    Subject, SubjectError, Transport, TransportModes,
+    Claims, Cosine, Description, Direction, Has, Lobe, NativeCells, OffSupport, Precision, RandomNumbers,
+    Samples, Subject, SubjectError, Transport, TransportModes,
 };
 use crate::registry::Model;
 use std::sync::Arc;
@@ -263,6 +263,12 @@ impl Subject for Blend {
 
     fn hints(&self, wo: Direction) -> Vec<Direction> {
         self.parts.iter().flat_map(|p| p.subject.hints(wo)).collect()
+    }
+
+    fn cells(&self, wo: Direction) -> Option<NativeCells> {
+        // Two tables have no common cells in general.
+        let mut all = self.parts.iter().filter(|p| p.share > 0.0).filter_map(|p| p.subject.cells(wo));
+        all.next().filter(|_| all.next().is_none())
     }
 }
 

@@ -2,7 +2,7 @@
 
 use super::disc_frame::Window;
 use crate::evidence::Evidence;
-use crate::sphere::{Partition, Point, STERADIANS};
+use crate::sphere::{Partition, Point};
 
 /// Residuals are clipped here, in standard deviations.
 pub const CLIP: f64 = 5.0;
@@ -36,7 +36,7 @@ impl Leaves {
         if !fits {
             return None;
         }
-        let steradians = |leaf: usize| STERADIANS * partition.leaf_cell(leaf).area();
+        let steradians = |leaf: usize| partition.chart().solid_angle(&partition.leaf_cell(leaf));
         let per_leaf = |of: &dyn Fn(usize) -> f64| (0..partition.len()).map(of).collect::<Vec<f64>>();
         let n = draws.map_or(0.0, |d| d.samples as f64);
         let share = |leaf: usize| draws.map_or(0.0, |d| d.counts[leaf] as f64 / n);

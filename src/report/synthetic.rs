@@ -139,6 +139,7 @@ pub fn evidence(subject: &str, theta: f64, phi: f64, claimed: Lobe, sampled: Lob
         jacobian: None,
         variations: None,
         two_sided: None,
+        given: None,
         partition: Some(partition),
         integrals: Some(integrals),
         draws: vec![draws],

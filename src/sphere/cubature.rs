@@ -1,6 +1,8 @@
 //! Adaptive cubature over the leaves of a partition.
 
-use super::chart::{Point, STERADIANS};
+use super::along::within;
+use super::breaks::Breaks;
+use super::chart::Point;
 use super::genz_malik::{NODES, Rule};
 use super::partition::{Cell, Partition};
 use crate::bsdf::Direction;
@@ -121,9 +123,9 @@ impl LeafIntegrals {
 }
 
 /// One cell of the cubature.
-struct Patch {
+pub(super) struct Patch {
     leaf: u32,
-    cell: Cell,
+    pub(super) cell: Cell,
     depth: u32,
     suspicion: u32,
     axis: u8,
@@ -149,9 +151,23 @@ pub fn integrate<E>(
     pilot: &[Point],
     markers: &[Marker],
     goal: &Goal,
+    f: impl FnMut(&[Direction], &mut [f64]) -> Result<(), E>,
+) -> Result<LeafIntegrals, E> {
+    integrate_within(None, partition, pilot, markers, goal, f)
+}
+
+/// As [`integrate`], of a function with jumps: patches lie within the cells of
+/// `breaks`, where they are those of the partition's chart.
+pub fn integrate_within<E>(
+    breaks: Option<&Breaks>,
+    partition: &Partition,
+    pilot: &[Point],
+    markers: &[Marker],
+    goal: &Goal,
     mut f: impl FnMut(&[Direction], &mut [f64]) -> Result<(), E>,
 ) -> Result<LeafIntegrals, E> {
-    let mut todo = first_patches(partition, pilot, markers);
+    let cells = breaks.filter(|b| b.chart() == *partition.chart()).map_or(&[][..], Breaks::cells);
+    let mut todo = first_patches(partition, cells, pilot, markers);
     let mut done: Vec<Patch> = Vec::new();
     // Values and errors of `done`, `components` each.
     let (mut values, mut errors): (Vec<f64>, Vec<f64>) = Default::default();
@@ -162,7 +178,7 @@ pub fn integrate<E>(
         evaluations += (todo.len() * NODES) as u64;
         evaluate(partition, &mut todo, goal, &mut f, &mut values, &mut errors, &mut largest)?;
         done.append(&mut todo);
-        let mut split = to_split(&done, &values, &errors, partition.len(), goal, pilot_size);
+        let mut split = to_split(&done, &values, &errors, partition, goal, pilot_size);
         if 2 * evaluations >= goal.evaluations {
             // The rest is for what must be reached.
             split.iter_mut().filter(|s| **s == Split::Wanted).for_each(|s| *s = Split::No);
@@ -218,8 +234,9 @@ pub fn integrate<E>(
     }
 }
 
-/// The leaves, graded towards their pilot points.
-fn first_patches(partition: &Partition, pilot: &[Point], markers: &[Marker]) -> Vec<Patch> {
+/// The leaves, cut along the edges of `cells` and graded towards their pilot
+/// points.
+fn first_patches(partition: &Partition, cells: &[Cell], pilot: &[Point], markers: &[Marker]) -> Vec<Patch> {
     let mut of_leaf: Vec<Patch> = (0..partition.len())
         .map(|leaf| Patch {
             leaf: leaf as u32,
@@ -247,7 +264,7 @@ fn first_patches(partition: &Partition, pilot: &[Point], markers: &[Marker]) -> 
         }
     }
     let mut graded = Vec::with_capacity(of_leaf.len());
-    let mut open = of_leaf;
+    let mut open = if cells.is_empty() { of_leaf } else { within(partition, cells, of_leaf) };
     while let Some(mut patch) = open.pop() {
         match unfilled_axis(&patch) {
             Some(axis) if patch.depth < DEEPEST => {
@@ -282,10 +299,15 @@ fn unfilled_axis(patch: &Patch) -> Option<u8> {
     least(points, FILL).or_else(|| least(points.div_ceil(2), CROWDED))
 }
 
-/// Both halves of a patch across its axis.
+/// Both halves of a patch across its axis, one deeper.
 fn halve(patch: Patch) -> [Patch; 2] {
     let axis = usize::from(patch.axis);
     let at = patch.cell.middle(axis);
+    cut(Patch { depth: patch.depth + 1, ..patch }, axis, at)
+}
+
+/// Both parts of a patch, cut at `at` across `axis`.
+pub(super) fn cut(patch: Patch, axis: usize, at: f64) -> [Patch; 2] {
     let (left_pilot, right_pilot) = patch.pilot.into_iter().partition(|p| p[axis] < at);
     let mut left_markers = patch.markers.clone();
     left_markers.retain(|m| m.at[axis] - m.reach < at);
@@ -295,9 +317,9 @@ fn halve(patch: Patch) -> [Patch; 2] {
     let half = |cell, pilot, markers| Patch {
         leaf: patch.leaf,
         cell,
-        depth: patch.depth + 1,
+        depth: patch.depth,
         suspicion: patch.suspicion,
-        axis: 1 - patch.axis,
+        axis: 1 - axis as u8,
         pilot,
         markers,
         seen: [0.0; 2],
@@ -316,26 +338,29 @@ fn evaluate<E>(
     largest: &mut [f64],
 ) -> Result<(), E> {
     let rule = Rule::new();
+    let chart = partition.chart();
     let mut directions = Vec::new();
     let mut rows = Vec::new();
     // 256 patches are 4352 directions: enough for any transport.
     for patches in todo.chunks_mut(256) {
         directions.clear();
         for patch in patches.iter() {
-            directions.extend(
-                rule.points().iter().map(|&[s, t]| partition.chart().to_direction(patch.cell.at(s, t))),
-            );
+            directions.extend(rule.points().iter().map(|&[s, t]| chart.to_direction(patch.cell.at(s, t))));
         }
         rows.clear();
         rows.resize(directions.len() * goal.components, 0.0);
         f(&directions, &mut rows)?;
-        for (patch, rows) in patches.iter_mut().zip(rows.chunks_exact(NODES * goal.components)) {
-            let solid_angle = STERADIANS * patch.cell.area();
+        let nodes = rows.chunks_exact(NODES * goal.components).zip(directions.chunks_exact(NODES));
+        for (patch, (rows, directions)) in patches.iter_mut().zip(nodes) {
+            // What the chart's measure adds to the integrand; 1 on one of equal area.
+            let mut stretch = [1.0; NODES];
+            stretch.iter_mut().zip(directions).for_each(|(s, d)| *s = chart.stretch(*d));
+            let unit = chart.unit() * patch.cell.area();
             for c in 0..goal.components {
                 let node = |k: usize| rows[k * goal.components + c];
-                let (value, error) = rule.apply(node);
-                values.push(value * solid_angle);
-                errors.push(error * solid_angle);
+                let (value, error) = rule.apply(|k| node(k) * stretch[k]);
+                values.push(value * unit);
+                errors.push(error * unit);
                 let top = (0..NODES).map(node).fold(0.0, f64::max);
                 largest[c] = largest[c].max(top);
             }
@@ -344,7 +369,9 @@ fn evaluate<E>(
                 [row[0], row[1..1 + goal.controlled].iter().sum::<f64>()]
             };
             let longer = u8::from(patch.cell.width(1) > patch.cell.width(0));
-            patch.axis = rule.rougher_axis(|k| steering(k)[0], |k| steering(k)[1]).unwrap_or(longer);
+            patch.axis = rule
+                .rougher_axis(|k| steering(k)[0] * stretch[k], |k| steering(k)[1] * stretch[k])
+                .unwrap_or(longer);
             for k in 0..NODES {
                 let s = steering(k);
                 patch.seen = [patch.seen[0].max(s[0]), patch.seen[1].max(s[1])];
@@ -373,10 +400,11 @@ fn to_split(
     patches: &[Patch],
     values: &[f64],
     errors: &[f64],
-    leaves: usize,
+    partition: &Partition,
     goal: &Goal,
     pilot_size: f64,
 ) -> Vec<Split> {
+    let leaves = partition.len();
     let n = goal.components;
     let steering = 1 + goal.controlled;
     let mut total = vec![0.0; steering];
@@ -420,7 +448,8 @@ fn to_split(
                 cell_sum > NONCENTRALITY && cell_term(patch.leaf as usize) * error[0] > NONCENTRALITY * share;
             let off = |c: usize| total_error[c] > allowed(c) && error[c] > allowed(c) * share;
             let (by_mass, by_value) = (off(0), (1..steering).any(off));
-            let solid_angle = STERADIANS * patch.cell.area();
+            let solid_angle =
+                if patch.markers.is_empty() { 0.0 } else { partition.chart().solid_angle(&patch.cell) };
             let by_marker = patch.markers.iter().any(|m| {
                 (m.density > 3.0 * patch.seen[0] && m.density * solid_angle > allowed(0))
                     || (m.value > 3.0 * patch.seen[1]
@@ -445,7 +474,7 @@ fn to_split(
 
 #[cfg(test)]
 mod tests {
-    use super::super::chart::Chart;
+    use super::super::chart::{Chart, STERADIANS};
     use super::*;
     use std::f64::consts::PI;
 

@@ -1,6 +1,6 @@
 //! The cell tree: a partition of the sphere into cells of near-equal mass.
 
-use super::chart::{Chart, Point};
+use super::chart::{Chart, Point, Shape};
 use crate::bsdf::Direction;
 use serde::{Deserialize, Serialize};
 
@@ -10,7 +10,7 @@ const GRID: f64 = (1u64 << 40) as f64;
 
 /// The least width of a cell, in steps of the grid: two steps leave room for
 /// a split.
-const NARROWEST: f64 = 2.0 / GRID;
+pub(super) const NARROWEST: f64 = 2.0 / GRID;
 
 /// Where the pilot has fewer points than this, a cell is not split on their
 /// word.
@@ -25,7 +25,12 @@ const SIDE_BY_SIDE: usize = 16;
 const DESCENTS: std::ops::RangeInclusive<usize> = 11..=13;
 
 /// A hemisphere in which the pilot has no points is cut into 2⁴ equal cells.
-const EMPTY_DEPTH: u32 = 4;
+pub(super) const EMPTY_DEPTH: u32 = 4;
+
+/// The nearest place of the grid.
+pub(super) fn snap(at: f64) -> f64 {
+    (at * GRID).round() / GRID
+}
 
 /// A rectangle of the [chart](Chart)'s squares; it never straddles the horizon.
 #[derive(Clone, Copy, Debug, PartialEq)]
@@ -37,7 +42,7 @@ pub struct Cell {
 }
 
 impl Cell {
-    /// Area in the square; times 2π its solid angle.
+    /// Area in the square; see [`Chart::solid_angle`].
     pub fn area(&self) -> f64 {
         (self.hi[0] - self.lo[0]) * (self.hi[1] - self.lo[1])
     }
@@ -123,7 +128,8 @@ impl Partition {
         tree
     }
 
-    fn sphere(chart: Chart) -> Self {
+    /// The hemispheres, without numbers for their leaves.
+    pub(super) fn sphere(chart: Chart) -> Self {
         let whole = Cell { lo: [0.0, 0.0], hi: [2.0, 1.0] };
         let mut tree = Self {
             chart,
@@ -137,7 +143,8 @@ impl Partition {
         tree
     }
 
-    fn split(&mut self, node: usize, axis: usize, at: f64) -> usize {
+    /// Cuts a leaf; returns the first of both children.
+    pub(super) fn split(&mut self, node: usize, axis: usize, at: f64) -> usize {
         let child = self.nodes.len();
         self.nodes[node] = Node { at, child: child as u32, axis: axis as u32 };
         for cell in self.cells[node].split(axis, at) {
@@ -153,13 +160,13 @@ impl Partition {
             return;
         }
         let axis = (depth % 2) as usize;
-        let middle = (self.cells[node].middle(axis) * GRID).round() / GRID;
+        let middle = snap(self.cells[node].middle(axis));
         let child = self.split(node, axis, middle);
         self.split_evenly(child, depth - 1);
         self.split_evenly(child + 1, depth - 1);
     }
 
-    fn split_at_medians(&mut self, node: usize, points: &mut [Point], leaves: usize) {
+    pub(super) fn split_at_medians(&mut self, node: usize, points: &mut [Point], leaves: usize) {
         if leaves < 2 || points.len() < 2 * FEWEST_POINTS {
             return;
         }
@@ -174,7 +181,7 @@ impl Partition {
         for axis in [wide, 1 - wide] {
             let half = points.len() / 2;
             let (_, median, _) = points.select_nth_unstable_by(half, |a, b| a[axis].total_cmp(&b[axis]));
-            let at = (median[axis] * GRID).round() / GRID;
+            let at = snap(median[axis]);
             let cell = self.cells[node];
             if at - cell.lo[axis] < NARROWEST || cell.hi[axis] - at < NARROWEST {
                 continue;
@@ -188,7 +195,8 @@ impl Partition {
         }
     }
 
-    fn number_leaves(&mut self) {
+    /// Must follow all cuts.
+    pub(super) fn number_leaves(&mut self) {
         self.leaf_number = vec![u32::MAX; self.nodes.len()];
         self.leaves.clear();
         let mut depth_of = vec![0usize; self.nodes.len()];
@@ -376,7 +384,7 @@ impl Descent {
 }
 
 /// Moves the points for which `first` holds to the front; returns their number.
-fn partition_points(points: &mut [Point], first: impl Fn(&Point) -> bool) -> usize {
+pub(super) fn partition_points(points: &mut [Point], first: impl Fn(&Point) -> bool) -> usize {
     let mut count = 0;
     for k in 0..points.len() {
         if first(&points[k]) {
@@ -387,12 +395,18 @@ fn partition_points(points: &mut [Point], first: impl Fn(&Point) -> bool) -> usi
     count
 }
 
-/// The saved form: cos and sin of the chart's azimuth, and in preorder −1 for a leaf or 2·at·2⁴⁰ + axis
+/// The saved form: cos and sin of the chart's azimuth, its shape, and in preorder −1 for a leaf or 2·at·2⁴⁰ + axis
 /// for a split.
 #[derive(Serialize, Deserialize)]
 struct Saved {
     x_axis: [f64; 2],
+    #[serde(default, skip_serializing_if = "is_default")]
+    shape: Shape,
     preorder: Vec<i64>,
+}
+
+fn is_default(shape: &Shape) -> bool {
+    *shape == Shape::default()
 }
 
 impl From<Partition> for Saved {
@@ -409,7 +423,7 @@ impl From<Partition> for Saved {
                 }
             }
         }
-        Self { x_axis: tree.chart.x_axis(), preorder }
+        Self { x_axis: tree.chart.x_axis(), shape: tree.chart.shape(), preorder }
     }
 }
 
@@ -417,7 +431,7 @@ impl TryFrom<Saved> for Partition {
     type Error = String;
 
     fn try_from(saved: Saved) -> Result<Self, String> {
-        let mut tree = Self::sphere(Chart::with_x_axis(saved.x_axis));
+        let mut tree = Self::sphere(Chart::with_x_axis(saved.x_axis).shaped(saved.shape));
         let mut open = vec![0usize];
         let mut codes = saved.preorder.iter();
         while let Some(node) = open.pop() {
