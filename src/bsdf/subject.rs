@@ -1,7 +1,9 @@
 //! The two interfaces: [`Bsdf`] is what an author writes, [`Subject`] what the
 //! harness calls.
 
-use super::{Description, Direction, Sample, Samples, Spectrum, Transport};
+use super::{
+    Description, Direction, FresnelFunction, NormalDistribution, Sample, Samples, Spectrum, Transport,
+};
 
 /// What a material author implements. One direction at a time, easy to write.
 ///
@@ -57,6 +59,14 @@ pub trait Subject: Send + Sync {
     /// As [`Bsdf::hints`].
     fn hints(&self, _wo: Direction) -> Vec<Direction> {
         Vec::new()
+    }
+    /// The distribution of normals that this is, where its description says so.
+    fn distribution(&self) -> Option<&dyn NormalDistribution> {
+        None
+    }
+    /// The Fresnel function that this is, where its description says so.
+    fn fresnel(&self) -> Option<&dyn FresnelFunction> {
+        None
     }
 }
 

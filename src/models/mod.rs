@@ -1,4 +1,4 @@
-//! Built-in BSDFs, one file each.
+//! Built-in BSDFs and their parts, one file each.
 
 use crate::registry::Model;
 
@@ -6,6 +6,7 @@ mod blend;
 mod conductor;
 mod dielectric;
 pub mod fresnel;
+mod interface;
 mod lambert;
 mod metal;
 pub mod microfacet;
@@ -27,5 +28,7 @@ pub fn all() -> Vec<Model> {
         conductor::model(),
         microfacet::torrance_sparrow::model(),
         blend::model(),
+        microfacet::masked::model(),
+        interface::model(),
     ]
 }

@@ -20,6 +20,15 @@ impl Roughness {
         Self { x: alpha, y: alpha }
     }
 
+    /// As parameters tell it: `alpha_y` = 0 means as `alpha`.
+    pub(super) fn of_parameters(alpha: f64, alpha_y: f64) -> Result<Self, String> {
+        match alpha_y {
+            0.0 => Ok(Self::isotropic(alpha)),
+            y if y < 1e-4 => Err("alpha_y must be 0, which means as alpha, or from 1e-4 to 1".into()),
+            y => Ok(Self { x: alpha, y }),
+        }
+    }
+
     /// Whether both are equal.
     #[inline]
     pub fn is_isotropic(self) -> bool {

@@ -52,13 +52,7 @@ pub struct TorranceSparrow {
 /// The registered model `torrance-sparrow`.
 pub(in crate::models) fn model() -> Model {
     Model::new("torrance-sparrow", "reflection from microfacets (Torrance and Sparrow 1967)", |p| {
-        let x = p.number("alpha");
-        let y = match p.number("alpha_y") {
-            0.0 => x,
-            y if y < 1e-4 => return Err("alpha_y must be 0, which means as alpha, or from 1e-4 to 1".into()),
-            y => y,
-        };
-        let alpha = Roughness { x, y };
+        let alpha = Roughness::of_parameters(p.number("alpha"), p.number("alpha_y"))?;
         TorranceSparrow::new(
             match p.text("distribution") {
                 "beckmann" => Distribution::beckmann(alpha),
