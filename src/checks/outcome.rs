@@ -254,7 +254,10 @@ pub fn needs_kind(check: &dyn Check, kind: SubjectKind) -> Result<(), String> {
         return Ok(());
     }
     let meant: Vec<_> = check.kinds().iter().map(|k| k.noun()).collect();
-    Err(format!("a {} is no {}", kind.noun(), meant.join(" and no ")))
+    Err(match meant[..] {
+        [one] => format!("a {} is no {one}", kind.noun()),
+        _ => format!("a {} is neither a {}", kind.noun(), meant.join(" nor a ")),
+    })
 }
 
 /// `Err` with a reason if one of the needed functions is missing.

@@ -15,6 +15,7 @@ mod parts;
 mod probes;
 mod samples;
 mod setup;
+mod slopes;
 mod tally;
 mod variations;
 
