@@ -38,6 +38,9 @@ const MOST_EVALUATIONS: u64 = 600_000;
 const CROSS_SETS: u32 = 8;
 const CROSS_DEVIATIONS: f64 = 10.0;
 
+/// Larger values of D count as this one, so that their sums stay finite.
+const LARGEST: f64 = 1e100;
+
 /// Normals at which identities are looked at, spread and drawn each.
 const PROBES: usize = 256;
 
@@ -291,12 +294,8 @@ fn integral(
         normals = at;
         integrands(meter, wo, &normals, rows)?;
         for ((p, steradians), row) in points.iter().zip(&steradians).zip(rows.chunks_exact_mut(COMPONENTS)) {
-            // The back square is no part of the slice, and its rim overflows.
-            let scale = steradians / STERADIANS;
-            if p[0] >= 1.0 || !scale.is_finite() {
-                row.fill(0.0);
-                continue;
-            }
+            // The back square is no part of the slice.
+            let scale = if p[0] < 1.0 { steradians / STERADIANS } else { 0.0 };
             row.iter_mut().for_each(|v| *v *= scale);
             row[0] /= share;
         }
@@ -348,7 +347,7 @@ fn integrands(meter: &Meter, wo: Direction, normals: &[Direction], rows: &mut [f
     parts::densities(meter, normals, &mut density)?;
     parts::masking(meter, wo, normals, &mut masking)?;
     for (k, (m, row)) in normals.iter().zip(rows.chunks_exact_mut(COMPONENTS)).enumerate() {
-        let (d, cos) = (density[k], m.z.abs());
+        let (d, cos) = (density[k].min(LARGEST), m.z.abs());
         let (facing, averted) = (wo.dot(*m).max(0.0) / wo.z, (-wo.dot(*m)).max(0.0) / wo.z);
         row.copy_from_slice(&[d * cos, masking[k] * facing * d, facing * d, averted * d, d, d * cos * cos]);
     }

@@ -35,12 +35,12 @@ pub fn densities(meter: &Meter, m: &[Direction], out: &mut Vec<f64>) -> Result<(
     Ok(())
 }
 
-/// G1(w, m) for each of `m`, 0 for those turned away.
+/// G1(w, m) for each of `m`, 0 for those turned away or below the horizon.
 pub fn masking(meter: &Meter, w: Direction, m: &[Direction], out: &mut Vec<f64>) -> Result<(), Halt> {
     meter.part("g1", m.len(), |s| {
         let d = normals(s)?;
         out.clear();
-        out.extend(m.iter().map(|m| if w.dot(*m) > 0.0 { d.g1(w, *m) } else { 0.0 }));
+        out.extend(m.iter().map(|m| if m.z > 0.0 && w.dot(*m) > 0.0 { d.g1(w, *m) } else { 0.0 }));
         Ok(())
     })?;
     for (value, m) in out.iter_mut().zip(m) {

@@ -41,8 +41,9 @@ const ROUNDS: usize = 12;
 const FAR: f64 = 3.0;
 
 /// (−1, 1) to the real line, with algebraic tails as slopes have them, and its
-/// derivative.
+/// derivative; both ends are as near as f64 comes to them.
 fn line(x: f64) -> (f64, f64) {
+    let x = x.clamp(f64::EPSILON - 1.0, 1.0 - f64::EPSILON);
     let rest = (1.0 - x) * (1.0 + x);
     (x / rest, (1.0 + x * x) / (rest * rest))
 }
