@@ -9,7 +9,7 @@ use crate::bsdf::{
 };
 
 /// Cosines at which two Fresnel functions are compared.
-const COMPARED: usize = 65;
+pub const COMPARED: usize = 65;
 
 fn normals(subject: &dyn Subject) -> Result<&dyn NormalDistribution, SubjectError> {
     let missing = "it is described as a distribution of normals, and gives none";
@@ -114,8 +114,8 @@ pub fn reflection(meter: &Meter, cos: f64) -> Result<Reflection, Halt> {
 }
 
 /// What a part says beyond eval, pdf and sample, as numbers to compare: G1 of a
-/// distribution at each of `m`, the reflectance of a Fresnel function over its
-/// angles. Nothing of a BSDF.
+/// distribution at each of `m`, and all that a Fresnel function says over its
+/// angles, [`COMPARED`] reflectances first. Nothing of a BSDF.
 pub fn values(meter: &Meter, setup: &Setup, m: &[Direction]) -> Result<Vec<f64>, Halt> {
     let mut out = Vec::new();
     match meter.description.kind {
@@ -124,11 +124,18 @@ pub fn values(meter: &Meter, setup: &Setup, m: &[Direction]) -> Result<Vec<f64>,
         SubjectKind::Distribution => {}
         SubjectKind::Fresnel => {
             let ends = if setup.claims.transmissive { [-1.0, 1.0] } else { [0.0, 1.0] };
+            let mut more = Vec::new();
             for k in 0..COMPARED {
                 let cos = ends[0] + (ends[1] - ends[0]) * k as f64 / (COMPARED - 1) as f64;
-                let reflected = reflection(meter, cos)?.reflectance;
-                out.extend(reflected.iter().map(|r| meter.sane("reflectance", *r, || at(setup, cos))));
+                let all = reflection(meter, cos)?;
+                let mut add = |to: &mut Vec<f64>, name, spectrum: &Spectrum| {
+                    to.extend(spectrum.iter().map(|v| meter.sane(name, *v, || at(setup, cos))));
+                };
+                add(&mut out, "reflectance", &all.reflectance);
+                all.transmittance.iter().for_each(|t| add(&mut more, "transmittance", t));
+                all.polarised.iter().flatten().for_each(|p| add(&mut more, "polarised", p));
             }
+            out.append(&mut more);
         }
     }
     Ok(out)
