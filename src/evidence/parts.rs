@@ -128,7 +128,7 @@ pub fn values(meter: &Meter, setup: &Setup, m: &[Direction]) -> Result<Vec<f64>,
             for k in 0..COMPARED {
                 let cos = ends[0] + (ends[1] - ends[0]) * k as f64 / (COMPARED - 1) as f64;
                 let all = reflection(meter, cos)?;
-                let mut add = |to: &mut Vec<f64>, name, spectrum: &Spectrum| {
+                let add = |to: &mut Vec<f64>, name, spectrum: &Spectrum| {
                     to.extend(spectrum.iter().map(|v| meter.sane(name, *v, || at(setup, cos))));
                 };
                 add(&mut out, "reflectance", &all.reflectance);
