@@ -186,10 +186,11 @@ impl Check for Distribution {
             return Outcome::inconclusive(reason).into();
         }
         let message = format!(
-            "∫D cos θm = {:.6}, G1 leaves {:.6} of the projected area, weak white furnace {:.6}{}",
+            "∫D cos θm = {:.6}, G1 leaves {:.6} of the projected area, weak white furnace {:.4} ± {:.0e}{}",
             facets.projected.value,
             facets.visible.value,
             facets.furnace.value,
+            facets.furnace.error,
             facets.lambda.map_or(String::new(), |l| format!(", Λ = {l:.6}"))
         );
         Outcome {
