@@ -5,16 +5,29 @@
 //! cargo run --release --example own_command -- list paper
 //! cargo run --release --example own_command -- check paper:k=2
 //! cargo run --release --example own_command -- check paper-nan
+//! cargo run --release --example own_command -- check hemispheres
+//! cargo run --release --example own_command -- check film
 //! ```
 
-use gonio::bsdf::{Bsdf, Description, Direction, Lobe, Sample, Spectrum, Transport};
+use gonio::bsdf::{
+    Bsdf, Description, Direction, FresnelFunction, Lobe, NormalDistribution, Sample, Spectrum, Transport,
+};
 use gonio::registry::{Model, Parameters, Registry};
 use std::f64::consts::PI;
 use std::process::ExitCode;
 use std::time::Duration;
 
 fn main() -> ExitCode {
-    let registry = Registry::builtin().register(model("paper", "none"));
+    let registry = Registry::builtin()
+        .register(model("paper", "none"))
+        .register(Model::distribution("hemispheres", "a surface of half spheres", |_| Ok(Hemispheres)))
+        .register(
+            Model::fresnel("film", "Schlick's approximation over a film that absorbs", |p| {
+                Ok(Film { f0: p.number("f0"), absorption: p.number("absorption") })
+            })
+            .number("f0", 0.04, 0.0..=1.0, "reflectance at normal incidence")
+            .number("absorption", 0.2, 0.0..=1.0, "of what passes the film"),
+        );
     gonio::main(
         DEFECTS.iter().fold(registry, |r, defect| r.register(model(&format!("paper-{defect}"), defect))),
     )
@@ -78,6 +91,50 @@ impl Bsdf for Paper {
         }
         let weight = self.eval(wo, wi, transport) * (wi.z / pdf);
         self.broken_sample(u, Sample { wi, weight, pdf, lobe: Lobe::DIFFUSE_REFLECTION })
+    }
+}
+
+/// The parts of BSDFs can be measured by themselves: a distribution of normals
+/// with its masking. Here every normal has as much area: D = 1/π, which is GGX
+/// at α = 1.
+struct Hemispheres;
+
+impl NormalDistribution for Hemispheres {
+    fn describe(&self) -> Description {
+        Description::new("hemispheres").dimensions(2).claims(|c| c.isotropic = true)
+    }
+
+    fn density(&self, m: Direction) -> f64 {
+        if m.z > 0.0 { 1.0 / PI } else { 0.0 }
+    }
+
+    /// Of a half sphere's visible area π(1 + cos θ)/2 a view can use π cos θ.
+    fn g1(&self, w: Direction, _: Direction) -> f64 {
+        2.0 * w.z / (1.0 + w.z)
+    }
+
+    fn sample(&self, u: &[f64]) -> Direction {
+        Direction::from_angles(u[0].sqrt().asin(), 2.0 * PI * u[1])
+    }
+}
+
+/// And a Fresnel function: the reflectance by angle.
+struct Film {
+    f0: f64,
+    absorption: f64,
+}
+
+impl FresnelFunction for Film {
+    fn describe(&self) -> Description {
+        Description::new("film")
+    }
+
+    fn reflectance(&self, cos: f64) -> Spectrum {
+        Spectrum::from(self.f0 + (1.0 - self.f0) * (1.0 - cos).powi(5))
+    }
+
+    fn transmittance(&self, cos: f64) -> Option<Spectrum> {
+        Some(Spectrum::from((1.0 - self.reflectance(cos)[0]) * (1.0 - self.absorption)))
     }
 }
 

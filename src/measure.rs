@@ -1,6 +1,9 @@
-//! A BSDF measured from a unit test or another program.
+//! A subject measured from a unit test or another program.
 
-use crate::bsdf::{Description, Direction, NativeCells, Samples, Subject, SubjectError, Transport};
+use crate::bsdf::{
+    Description, Direction, FresnelFunction, NativeCells, NormalDistribution, Samples, Subject, SubjectError,
+    SubjectKind, Transport,
+};
 use crate::checks::Verdict;
 use crate::engine::{self, Options, Results};
 use crate::registry::Parameters;
@@ -62,6 +65,14 @@ impl<S: Subject> Subject for Lent<'_, S> {
     fn cells(&self, wo: Direction) -> Option<NativeCells> {
         self.0.cells(wo)
     }
+
+    fn distribution(&self) -> Option<&dyn NormalDistribution> {
+        self.0.distribution()
+    }
+
+    fn fresnel(&self) -> Option<&dyn FresnelFunction> {
+        self.0.fresnel()
+    }
 }
 
 /// Runs every check on `bsdf` at six directions (twelve where it transmits or
@@ -69,14 +80,15 @@ impl<S: Subject> Subject for Lent<'_, S> {
 /// most `time_cap`; cases that time does not reach are skipped.
 pub fn measure<S: Subject>(bsdf: &S, settings: Settings, time_cap: Duration) -> Results<'_> {
     let description = crate::evidence::Meter::describe(bsdf);
-    let (name, claims) = match &description {
-        Ok(d) => (d.name.clone(), d.claims),
-        Err(_) => ("subject".into(), Default::default()),
+    let (name, kind, claims) = match &description {
+        Ok(d) => (d.name.clone(), d.kind, d.claims),
+        Err(_) => ("subject".into(), SubjectKind::Bsdf, Default::default()),
     };
     let subject: Arc<dyn Subject + '_> = Arc::new(Lent(bsdf));
-    let back = claims.transmissive || claims.two_sided;
+    let back = kind.has_directions() && (claims.transmissive || claims.two_sided);
+    let directions = if kind.has_directions() { &DIRECTIONS[..] } else { &DIRECTIONS[..1] };
     let mut cases = Vec::new();
-    for (theta, phi) in DIRECTIONS {
+    for &(theta, phi) in directions {
         for theta in [Some(theta), back.then_some(180.0 - theta)].into_iter().flatten() {
             for transport in claims.transport.modes() {
                 cases.push(Arc::new(Case {

@@ -3,7 +3,7 @@
 //! A model declares its parameters once; `gonio list`, validation, error
 //! messages, suites and the `sensitivity` check all read that declaration.
 
-use crate::bsdf::Subject;
+use crate::bsdf::{FresnelFunction, Interface, NormalDistribution, Normals, Subject, SubjectKind};
 use crate::models;
 use serde::{Deserialize, Serialize};
 use std::collections::BTreeMap;
@@ -222,6 +222,7 @@ type Build = dyn Fn(&Parameters, &Parts) -> Result<Arc<dyn Subject>, String> + S
 #[derive(Clone)]
 pub struct Model {
     name: String,
+    kind: SubjectKind,
     doc: String,
     parameters: Vec<Parameter>,
     build: Arc<Build>,
@@ -244,7 +245,13 @@ impl Model {
         build: impl Fn(&Parameters, &Parts) -> Result<S, String> + Send + Sync + 'static,
     ) -> Self {
         let build = move |p: &Parameters, parts: &Parts| Ok(Arc::new(build(p, parts)?) as Arc<dyn Subject>);
-        Self { name: name.into(), doc: doc.into(), parameters: Vec::new(), build: Arc::new(build) }
+        Self {
+            name: name.into(),
+            kind: SubjectKind::Bsdf,
+            doc: doc.into(),
+            parameters: Vec::new(),
+            build: Arc::new(build),
+        }
     }
 
     /// As [`new`](Self::new), for a model whose parameters decide what type of
@@ -255,7 +262,39 @@ impl Model {
         build: impl Fn(&Parameters) -> Result<Arc<dyn Subject>, String> + Send + Sync + 'static,
     ) -> Self {
         let build = move |p: &Parameters, _: &Parts| build(p);
-        Self { name: name.into(), doc: doc.into(), parameters: Vec::new(), build: Arc::new(build) }
+        Self {
+            name: name.into(),
+            kind: SubjectKind::Bsdf,
+            doc: doc.into(),
+            parameters: Vec::new(),
+            build: Arc::new(build),
+        }
+    }
+
+    /// A distribution of normals. It comes with the parameter `sampling`, which
+    /// says whether all normals are drawn or those visible from wo.
+    pub fn distribution<D: NormalDistribution + 'static>(
+        name: impl Into<String>,
+        doc: impl Into<String>,
+        build: impl Fn(&Parameters) -> Result<D, String> + Send + Sync + 'static,
+    ) -> Self {
+        let mut model = Self::new(name, doc, move |p| match p.text("sampling") {
+            "visible-normals" => Normals::visible(build(p)?),
+            _ => Ok(Normals::all(build(p)?)),
+        });
+        model.kind = SubjectKind::Distribution;
+        model.choice("sampling", &["normals", "visible-normals"], "which normals are drawn")
+    }
+
+    /// A Fresnel function.
+    pub fn fresnel<F: FresnelFunction + 'static>(
+        name: impl Into<String>,
+        doc: impl Into<String>,
+        build: impl Fn(&Parameters) -> Result<F, String> + Send + Sync + 'static,
+    ) -> Self {
+        let mut model = Self::new(name, doc, move |p| build(p).map(Interface));
+        model.kind = SubjectKind::Fresnel;
+        model
     }
 
     fn declare(mut self, name: &str, kind: Kind, doc: &str) -> Self {
@@ -323,6 +362,11 @@ impl Model {
     /// Its name.
     pub fn name(&self) -> &str {
         &self.name
+    }
+
+    /// What its subjects are.
+    pub fn kind(&self) -> SubjectKind {
+        self.kind
     }
 
     /// Its line of documentation.
@@ -537,7 +581,13 @@ impl Registry {
 
     /// The subject that the parameter `parameter` names, and its one spelling.
     fn nested(&self, parameter: &str, text: &str) -> Result<(String, Arc<dyn Subject>), RegistryError> {
-        let resolved = text.parse().and_then(|spelling| self.resolve(&spelling));
+        let resolved = text.parse().and_then(|spelling: Spelling| {
+            let kind = self.model(&spelling.name)?.kind;
+            if kind != SubjectKind::Bsdf {
+                return Err(RegistryError::NotABsdf { name: spelling.name, kind: kind.noun() });
+            }
+            self.resolve(&spelling)
+        });
         let wrong = |e| RegistryError::Nested { parameter: parameter.into(), error: Box::new(e) };
         resolved.map(|r| (r.spelling, r.subject)).map_err(wrong)
     }
@@ -626,6 +676,14 @@ pub enum RegistryError {
         parameter: String,
         /// What is wrong with it.
         error: Box<RegistryError>,
+    },
+    /// A part of BSDFs stands where a BSDF is meant.
+    #[error("`{name}` is a {kind} and no BSDF; `gonio list` shows what is")]
+    NotABsdf {
+        /// As asked for.
+        name: String,
+        /// What it is.
+        kind: &'static str,
     },
     /// The parameters do not go together.
     #[error("`{model}` cannot be built: {message}")]

@@ -374,6 +374,27 @@ fn list_shows_models_and_parameters_one_s_own_too() {
 }
 
 #[test]
+fn parts_of_one_s_own_are_measured_and_are_no_bsdfs() {
+    let desk = Desk::new();
+    let own = desk.own("list");
+    for (name, kind) in [("hemispheres", "distribution"), ("film", "Fresnel"), ("paper", "BSDF")] {
+        let row = own.out.lines().find(|l| l.starts_with(&format!("{name} "))).unwrap_or_default();
+        assert!(row.contains(kind), "{}", own.out);
+    }
+    desk.own("check hemispheres --samples 16384 --detect 1 --strict -o hemispheres").ends(0);
+    desk.own("check film --samples 4096 --strict -o film").ends(0);
+    let film = desk.report("film");
+    assert_eq!(film["summary"]["failed"], 0);
+    assert!(film["results"].as_array().unwrap().iter().all(|r| r["wo"].is_null()));
+    let visible = desk.own("check hemispheres:sampling=visible-normals");
+    visible.ends(2);
+    assert!(visible.err.contains("sampling=normals"), "{}", visible.err);
+    let nested = desk.gonio("check blend:first=fresnel");
+    nested.ends(2);
+    assert!(nested.err.contains("is a Fresnel function and no BSDF"), "{}", nested.err);
+}
+
+#[test]
 fn completions_and_help_and_version_are_printed() {
     let desk = Desk::new();
     for (line, part) in [

@@ -16,6 +16,47 @@ pub enum Precision {
     F64,
 }
 
+/// What a subject is, and with that which checks can say something of it.
+#[derive(
+    Clone, Copy, Debug, Default, PartialEq, Eq, PartialOrd, Ord, Hash, Serialize, Deserialize, JsonSchema,
+)]
+#[serde(rename_all = "lowercase")]
+pub enum SubjectKind {
+    /// A BSDF.
+    #[default]
+    Bsdf,
+    /// A microfacet distribution of normals with its masking; in place of wi
+    /// stand normals.
+    Distribution,
+    /// A reflectance by angle, without directions.
+    Fresnel,
+}
+
+impl SubjectKind {
+    /// Whether it is measured at given directions; what is not is measured once.
+    pub fn has_directions(self) -> bool {
+        self != Self::Fresnel
+    }
+
+    /// As it is written in lists.
+    pub fn word(self) -> &'static str {
+        match self {
+            Self::Bsdf => "BSDF",
+            Self::Distribution => "distribution",
+            Self::Fresnel => "Fresnel",
+        }
+    }
+
+    /// As it stands in a sentence after an article.
+    pub fn noun(self) -> &'static str {
+        match self {
+            Self::Bsdf => "BSDF",
+            Self::Distribution => "distribution of normals",
+            Self::Fresnel => "Fresnel function",
+        }
+    }
+}
+
 /// Which of the three functions a subject has.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, Serialize, Deserialize, JsonSchema)]
 pub struct Has {
@@ -59,6 +100,9 @@ pub struct ByConstruction {
 pub struct Description {
     /// The name in reports.
     pub name: String,
+    /// What it is.
+    #[serde(default)]
+    pub kind: SubjectKind,
     /// Names of the channels, 1 to 16: `r g b`, or wavelengths.
     pub channels: Vec<String>,
     /// How many random numbers `sample` reads.
@@ -84,6 +128,7 @@ impl Description {
     pub fn new(name: impl Into<String>) -> Self {
         Self {
             name: name.into(),
+            kind: SubjectKind::Bsdf,
             channels: vec!["value".into()],
             dimensions: 3,
             precision: Precision::F64,

@@ -1,7 +1,10 @@
 //! The two interfaces: [`Bsdf`] is what an author writes, [`Subject`] what the
 //! harness calls.
 
-use super::{Description, Direction, NativeCells, Sample, Samples, Spectrum, Transport};
+use super::{
+    Description, Direction, FresnelFunction, NativeCells, NormalDistribution, Sample, Samples, Spectrum,
+    Transport,
+};
 
 /// What a material author implements. One direction at a time, easy to write.
 ///
@@ -65,6 +68,14 @@ pub trait Subject: Send + Sync {
     }
     /// As [`Bsdf::cells`].
     fn cells(&self, _wo: Direction) -> Option<NativeCells> {
+        None
+    }
+    /// The distribution of normals that this is, where its description says so.
+    fn distribution(&self) -> Option<&dyn NormalDistribution> {
+        None
+    }
+    /// The Fresnel function that this is, where its description says so.
+    fn fresnel(&self) -> Option<&dyn FresnelFunction> {
         None
     }
 }

@@ -1,7 +1,7 @@
 //! Equal inputs give equal outputs, and successive samples are independent.
 
 use super::outcome::{Check, Effect, Judgement, Outcome, POWER, Terms, Verdict, needs_determinism};
-use crate::bsdf::Description;
+use crate::bsdf::{Description, SubjectKind};
 use crate::evidence::{Evidence, Measurement, SERIAL};
 use crate::statistics::{effect, noncentral};
 
@@ -21,6 +21,10 @@ impl Check for Determinism {
 
     fn needs(&self) -> &'static [Measurement] {
         &[Measurement::Repeats, Measurement::Draws]
+    }
+
+    fn kinds(&self) -> &'static [SubjectKind] {
+        &[SubjectKind::Bsdf, SubjectKind::Distribution, SubjectKind::Fresnel]
     }
 
     fn applies(&self, description: &Description) -> Result<(), String> {

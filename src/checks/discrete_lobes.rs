@@ -1,7 +1,7 @@
 //! Discrete lobes are where, what and as often as they say.
 
 use super::outcome::{Check, Effect, Judgement, Outcome, POWER, Terms, Verdict, needs_functions};
-use crate::bsdf::{Description, Lobe, Precision};
+use crate::bsdf::{Description, Lobe, Precision, SubjectKind};
 use crate::evidence::{Evidence, Measurement, Place, refracted};
 use crate::statistics::{binomial, normal};
 
@@ -36,6 +36,10 @@ impl Check for DiscreteLobes {
 
     fn needs(&self) -> &'static [Measurement] {
         &[Measurement::Samples, Measurement::Integrals, Measurement::Draws]
+    }
+
+    fn kinds(&self) -> &'static [SubjectKind] {
+        &[SubjectKind::Bsdf]
     }
 
     fn applies(&self, description: &Description) -> Result<(), String> {

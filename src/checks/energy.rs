@@ -1,7 +1,7 @@
 //! No direction gives back more flux than arrives.
 
 use super::outcome::{Check, Effect, Judgement, Outcome, Terms, Verdict, needs_determinism, needs_functions};
-use crate::bsdf::{Description, Precision};
+use crate::bsdf::{Description, Precision, SubjectKind};
 use crate::evidence::{Evidence, Measurement, Place};
 
 /// ∫s f|cos θi| + Σ s P_k w_k ≤ 1 for every channel, with the flux factor s =
@@ -55,6 +55,10 @@ impl Check for Energy {
 
     fn needs(&self) -> &'static [Measurement] {
         &[Measurement::Integrals, Measurement::Draws]
+    }
+
+    fn kinds(&self) -> &'static [SubjectKind] {
+        &[SubjectKind::Bsdf]
     }
 
     fn applies(&self, description: &Description) -> Result<(), String> {

@@ -2,7 +2,7 @@
 
 use super::albedo::{Mean, expected, judge_means};
 use super::outcome::{Check, Judgement, Outcome, Terms, needs_determinism, needs_functions};
-use crate::bsdf::Description;
+use crate::bsdf::{Description, SubjectKind};
 use crate::evidence::{Evidence, Measurement};
 
 /// Cosine and BSDF sampling combined by the balance heuristic (Veach and Guibas
@@ -21,6 +21,10 @@ impl Check for Mis {
 
     fn needs(&self) -> &'static [Measurement] {
         &[Measurement::Integrals, Measurement::Draws, Measurement::Mis]
+    }
+
+    fn kinds(&self) -> &'static [SubjectKind] {
+        &[SubjectKind::Bsdf]
     }
 
     fn applies(&self, description: &Description) -> Result<(), String> {

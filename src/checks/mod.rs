@@ -3,8 +3,10 @@
 mod albedo;
 mod determinism;
 mod discrete_lobes;
+mod distribution;
 mod efficiency;
 mod energy;
+mod fresnel;
 mod goodness_of_fit;
 mod isotropy;
 mod jacobian;
@@ -21,7 +23,7 @@ mod weight;
 mod white_furnace;
 
 pub use goodness_of_fit::level_p_values;
-pub use outcome::{Check, Effect, Judgement, Outcome, POWER, Terms, Verdict};
+pub use outcome::{Check, Effect, Judgement, Outcome, POWER, Terms, Verdict, needs_kind};
 
 /// Every check, in the order of reports.
 pub fn all() -> &'static [&'static dyn Check] {
@@ -42,6 +44,8 @@ pub fn all() -> &'static [&'static dyn Check] {
         &discrete_lobes::DiscreteLobes,
         &sensitivity::Sensitivity,
         &reference::Reference,
+        &distribution::Distribution,
+        &fresnel::Fresnel,
         &jacobian::Jacobian,
         &efficiency::Efficiency,
     ]

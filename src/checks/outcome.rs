@@ -1,6 +1,6 @@
 //! What a check says.
 
-use crate::bsdf::Description;
+use crate::bsdf::{Description, SubjectKind};
 use crate::evidence::{Evidence, Figure, Measurement, Place, Tally};
 use schemars::JsonSchema;
 use serde::{Deserialize, Serialize};
@@ -233,7 +233,12 @@ pub trait Check: Send + Sync {
     fn hypothesis(&self) -> &'static str;
     /// What must be measured.
     fn needs(&self) -> &'static [Measurement];
-    /// `Err` with the reason if it does not apply to a subject.
+    /// The kinds of subject that it says something of: those with directions
+    /// that are drawn.
+    fn kinds(&self) -> &'static [SubjectKind] {
+        &[SubjectKind::Bsdf, SubjectKind::Distribution]
+    }
+    /// `Err` with the reason if it does not apply to a subject of these kinds.
     fn applies(&self, description: &Description) -> Result<(), String>;
     /// Whether chance is involved, so that it takes a share of the budget.
     fn is_statistical(&self) -> bool {
@@ -241,6 +246,18 @@ pub trait Check: Send + Sync {
     }
     /// Judges.
     fn judge(&self, evidence: &Evidence, terms: &Terms) -> Judgement;
+}
+
+/// `Err` with a reason if a subject is of none of the kinds that a check is for.
+pub fn needs_kind(check: &dyn Check, kind: SubjectKind) -> Result<(), String> {
+    if check.kinds().contains(&kind) {
+        return Ok(());
+    }
+    let meant: Vec<_> = check.kinds().iter().map(|k| k.noun()).collect();
+    Err(match meant[..] {
+        [one] => format!("a {} is no {one}", kind.noun()),
+        _ => format!("a {} is neither a {}", kind.noun(), meant.join(" nor a ")),
+    })
 }
 
 /// `Err` with a reason if one of the needed functions is missing.

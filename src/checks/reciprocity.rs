@@ -1,7 +1,7 @@
 //! Light may take a path both ways.
 
 use super::outcome::{Check, Judgement, Outcome, Terms, Verdict, needs_determinism, needs_functions};
-use crate::bsdf::{Description, TransportModes};
+use crate::bsdf::{Description, SubjectKind, TransportModes};
 use crate::evidence::{Evidence, Measurement};
 
 /// eval(wo, wi)/η_o² = eval(wi, wo)/η_i² in radiance mode, its inverse in
@@ -22,6 +22,10 @@ impl Check for Reciprocity {
 
     fn needs(&self) -> &'static [Measurement] {
         &[Measurement::Pairs]
+    }
+
+    fn kinds(&self) -> &'static [SubjectKind] {
+        &[SubjectKind::Bsdf]
     }
 
     fn applies(&self, description: &Description) -> Result<(), String> {

@@ -2,7 +2,7 @@
 
 use super::goodness_of_fit::against;
 use super::outcome::{Check, Effect, Judgement, Outcome, Terms, Verdict, needs_determinism};
-use crate::bsdf::Description;
+use crate::bsdf::{Description, SubjectKind};
 use crate::evidence::{Evidence, Measurement, Resemblance};
 
 /// Equals the subject that the suite names as its `reference`: eval and pdf
@@ -46,6 +46,10 @@ impl Check for Reference {
 
     fn needs(&self) -> &'static [Measurement] {
         &[Measurement::Samples, Measurement::Integrals, Measurement::Draws, Measurement::Reference]
+    }
+
+    fn kinds(&self) -> &'static [SubjectKind] {
+        &[SubjectKind::Bsdf, SubjectKind::Distribution, SubjectKind::Fresnel]
     }
 
     fn applies(&self, description: &Description) -> Result<(), String> {

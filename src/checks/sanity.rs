@@ -1,7 +1,7 @@
 //! Every number is what a number of its kind must be.
 
 use super::outcome::{Check, Effect, Judgement, Outcome, Terms, Verdict};
-use crate::bsdf::Description;
+use crate::bsdf::{Description, SubjectKind};
 use crate::evidence::{Evidence, Measurement};
 
 /// Finite, eval ≥ 0, pdf ≥ 0, |wi| = 1: of everything that the subject returned
@@ -20,6 +20,10 @@ impl Check for Sanity {
 
     fn needs(&self) -> &'static [Measurement] {
         &Measurement::ALL
+    }
+
+    fn kinds(&self) -> &'static [SubjectKind] {
+        &[SubjectKind::Bsdf, SubjectKind::Distribution, SubjectKind::Fresnel]
     }
 
     fn applies(&self, _: &Description) -> Result<(), String> {

@@ -1,7 +1,7 @@
 //! Parameters do something, and reach their limits.
 
 use super::outcome::{Check, Effect, Judgement, Outcome, Terms, Verdict, needs_determinism};
-use crate::bsdf::Description;
+use crate::bsdf::{Description, SubjectKind};
 use crate::evidence::{CHANGE, Evidence, Limit, Measurement};
 use std::collections::BTreeMap;
 
@@ -28,6 +28,10 @@ impl Check for Sensitivity {
 
     fn needs(&self) -> &'static [Measurement] {
         &[Measurement::Samples, Measurement::Variations, Measurement::Integrals, Measurement::Draws]
+    }
+
+    fn kinds(&self) -> &'static [SubjectKind] {
+        &[SubjectKind::Bsdf, SubjectKind::Distribution, SubjectKind::Fresnel]
     }
 
     fn applies(&self, description: &Description) -> Result<(), String> {
@@ -61,10 +65,14 @@ impl Check for Sensitivity {
             let (message, found, tolerance) = match &v.limit {
                 Some(Limit::Narrow { median, roughness }) => (
                     format!(
-                        "`{}` = {}: the median sample is {:.3}° off the mirror",
+                        "`{}` = {}: the median sample is {:.3}° off the {}",
                         v.parameter,
                         v.to,
-                        median.0.to_degrees()
+                        median.0.to_degrees(),
+                        match evidence.description.kind {
+                            SubjectKind::Distribution => "normal",
+                            _ => "mirror",
+                        }
                     ),
                     median.0,
                     NARROW * roughness,

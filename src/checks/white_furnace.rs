@@ -34,6 +34,10 @@ impl Check for WhiteFurnace {
     }
 
     fn judge(&self, evidence: &Evidence, terms: &Terms) -> Judgement {
+        let claims = &evidence.description.claims;
+        if evidence.wo.z <= 0.0 && !claims.transmissive && !claims.two_sided {
+            return Outcome::skipped("seen from behind, where a one-sided subject gives back nothing").into();
+        }
         let Some(integrals) = &evidence.integrals else { return Judgement::Missing };
         // A rare discrete lobe may carry much of the flux: wait for all draws.
         if let (Some(next), true) = (terms.next, evidence.description.has.sample) {

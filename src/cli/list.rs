@@ -23,8 +23,11 @@ pub fn list(args: &ListArgs, registry: &Registry) -> Result<Exit, CliError> {
 }
 
 fn subjects(registry: &Registry) -> String {
-    let rows = registry.models().iter().map(|m| vec![m.name().to_string(), m.doc().to_string()]);
-    table(&["name", "what it is"], rows.collect())
+    let rows = registry
+        .models()
+        .iter()
+        .map(|m| vec![m.name().to_string(), m.kind().word().to_string(), m.doc().to_string()]);
+    table(&["name", "kind", "what it is"], rows.collect())
 }
 
 fn parameters(model: &Model) -> String {
@@ -92,6 +95,6 @@ mod tests {
             f0         number  0.04     0 to 1         reflectance (when f = schlick)\n\
             tint       number  0        0 to 1         colour (when f0 > 0)\n";
         assert_eq!(text, expected);
-        assert!(subjects(&Registry::empty().register(model)).ends_with("m     a model\n"));
+        assert!(subjects(&Registry::empty().register(model)).ends_with("m     BSDF  a model\n"));
     }
 }

@@ -58,6 +58,7 @@ fn selected(case: &Case) -> Vec<&'static dyn Check> {
 
 /// `Err` with the reason where a check is not run on a case.
 fn applies(check: &dyn Check, case: &Case, description: &Description) -> Result<(), String> {
+    checks::needs_kind(check, description.kind)?;
     if check.id() == "reference" && case.company.reference.is_none() {
         return Err("the suite names no reference".into());
     }

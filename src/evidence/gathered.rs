@@ -2,6 +2,8 @@
 
 use super::draws::Draws;
 use super::exact::{Repeats, corners, rotations};
+use super::facets::Facets;
+use super::fresnel::FresnelLaws;
 use super::integrals::Integrals;
 use super::jacobian::Jacobian;
 use super::meter::{Evaluations, Halt, Meter, Sanity, Watch};
@@ -10,7 +12,7 @@ use super::samples::{Pilot, SampleIdentities};
 use super::setup::Setup;
 use super::tally::Tally;
 use super::variations::{Comparison, Variant, Variation, two_sided};
-use crate::bsdf::{Claims, Cosine, Description, Direction, Subject, SubjectError, Transport};
+use crate::bsdf::{Claims, Cosine, Description, Direction, Subject, SubjectError, SubjectKind, Transport};
 use crate::sphere::{Breaks, Chart, Partition, Point};
 use serde::{Deserialize, Serialize};
 use std::sync::Arc;
@@ -47,11 +49,15 @@ pub enum Measurement {
     Mis,
     /// Another subject.
     Reference,
+    /// What a distribution of normals integrates to.
+    Facets,
+    /// What a Fresnel function reflects at all angles.
+    FresnelLaws,
 }
 
 impl Measurement {
     /// Every one.
-    pub const ALL: [Self; 11] = [
+    pub const ALL: [Self; 13] = [
         Self::Corners,
         Self::Samples,
         Self::Pairs,
@@ -63,6 +69,8 @@ impl Measurement {
         Self::Draws,
         Self::Mis,
         Self::Reference,
+        Self::Facets,
+        Self::FresnelLaws,
     ];
 }
 
@@ -110,6 +118,12 @@ pub struct Evidence {
     pub draws: Vec<Draws>,
     /// The other subject.
     pub reference: Option<Comparison>,
+    /// Integrals of a distribution of normals.
+    #[serde(default, skip_serializing_if = "Option::is_none")]
+    pub facets: Option<Facets>,
+    /// Laws of a Fresnel function.
+    #[serde(default, skip_serializing_if = "Option::is_none")]
+    pub fresnel: Option<FresnelLaws>,
     /// Directions evaluated.
     pub evaluations: Evaluations,
     /// What could not be measured, and why.
@@ -158,6 +172,8 @@ impl<'a> Gatherer<'a> {
             integrals: None,
             draws: Vec::new(),
             reference: None,
+            facets: None,
+            fresnel: None,
             evaluations: Evaluations::default(),
             halts: Vec::new(),
         };
@@ -179,15 +195,25 @@ impl<'a> Gatherer<'a> {
     /// measurements go on, unless it is out of time.
     pub fn prepare(&mut self, asked: &[Measurement], company: &Company, draws: u64) {
         use Measurement as M;
-        let has = self.meter.description.has;
+        let (has, kind) = (self.meter.description.has, self.meter.description.kind);
         // The pilot is always drawn: partitions and probes stand on it; and the
         // probe of the cosine's convention must not depend on what is asked for.
         let always = |step| match step {
             M::Samples => has.sample,
-            M::Pairs => has.eval && has.pdf && has.sample,
+            M::Pairs => has.eval && has.pdf && has.sample && kind == SubjectKind::Bsdf,
             _ => false,
         };
-        let order = [M::Samples, M::Pairs, M::Corners, M::Repeats, M::Rotations, M::Jacobian, M::Variations];
+        let order = [
+            M::Samples,
+            M::Pairs,
+            M::Corners,
+            M::Repeats,
+            M::Rotations,
+            M::Jacobian,
+            M::Variations,
+            M::Facets,
+            M::FresnelLaws,
+        ];
         for step in order {
             if step == M::Corners && self.settle_cosine() {
                 // Under the convention that was found.
@@ -205,6 +231,7 @@ impl<'a> Gatherer<'a> {
             }
         }
         if (asked.contains(&M::Integrals) || asked.contains(&M::Draws))
+            && (has.eval || has.pdf || has.sample)
             && !self.is_over()
             && let Err(halt) = self.integrate(draws)
         {
@@ -259,7 +286,9 @@ impl<'a> Gatherer<'a> {
                 evidence.samples = Some(identities);
                 self.pilot = pilot;
             }
-            Measurement::Pairs if has.eval => evidence.pairs = Some(Pairs::gather(meter, setup, pilot)?),
+            Measurement::Pairs if has.eval && meter.description.kind == SubjectKind::Bsdf => {
+                evidence.pairs = Some(Pairs::gather(meter, setup, pilot)?)
+            }
             Measurement::Corners => evidence.corners = Some(corners(meter, setup)?),
             Measurement::Repeats => evidence.repeats = Some(Repeats::gather(meter, setup, pilot)?),
             Measurement::Rotations => evidence.rotations = Some(rotations(meter, setup, pilot)?),
@@ -272,6 +301,14 @@ impl<'a> Gatherer<'a> {
                 if setup.claims.two_sided {
                     evidence.two_sided = Some(two_sided(meter, setup, pilot)?);
                 }
+            }
+            Measurement::Facets
+                if meter.description.kind == SubjectKind::Distribution && setup.wo.z > 0.0 =>
+            {
+                evidence.facets = Some(Facets::gather(meter, setup, pilot)?);
+            }
+            Measurement::FresnelLaws if meter.description.kind == SubjectKind::Fresnel => {
+                evidence.fresnel = Some(FresnelLaws::gather(meter, setup)?);
             }
             _ => {}
         }

@@ -212,6 +212,32 @@ impl<'a> Meter<'a> {
         self.call("cells", || Ok(self.subject.cells(wo)))
     }
 
+    /// Calls a part of the subject, with the protection of all calls; `rows` are
+    /// counted as values.
+    pub(super) fn part<T>(
+        &self,
+        function: &'static str,
+        rows: usize,
+        f: impl FnOnce(&dyn Subject) -> Result<T, SubjectError>,
+    ) -> Result<T, Halt> {
+        let value = self.call(function, || f(self.subject))?;
+        self.count(|e| e.eval += rows as u64);
+        Ok(value)
+    }
+
+    /// `value` if it is finite and not negative; else 0, which
+    /// [`sanity`](Self::sanity) tells of `function`.
+    pub(super) fn sane(&self, function: &str, value: f64, place: impl FnOnce() -> Place) -> f64 {
+        let mut sanity = self.sanity.borrow_mut();
+        sanity.checked += 1;
+        if value.is_finite() && value >= 0.0 {
+            return value;
+        }
+        let sentence = if value.is_finite() { "() ≥ 0" } else { "() is finite" };
+        sanity.broken(&format!("{function}{sentence}"), value, place().value(function, value));
+        0.0
+    }
+
     fn call<T>(
         &self,
         function: &'static str,

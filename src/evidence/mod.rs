@@ -3,21 +3,27 @@
 
 mod draws;
 mod exact;
+mod facets;
 mod figure;
+mod fresnel;
 mod gathered;
 mod integrals;
 mod jacobian;
 mod meter;
 mod pairs;
+mod parts;
 mod probes;
 mod samples;
 mod setup;
+mod slopes;
 mod tally;
 mod variations;
 
 pub use draws::{BLOCK, DiscreteLobe, Draws, SERIAL, Sums};
 pub use exact::Repeats;
+pub use facets::{Estimate, Facets};
 pub use figure::Figure;
+pub use fresnel::{FresnelLaw, FresnelLaws};
 pub use gathered::{Company, Evidence, Gatherer, Measurement};
 pub use integrals::{Integrals, SMALLEST_PEAK, refracted};
 pub use jacobian::Jacobian;

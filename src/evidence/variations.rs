@@ -2,11 +2,12 @@
 
 use super::integrals::expected_directions;
 use super::meter::{Halt, Meter, Watch};
+use super::parts;
 use super::probes;
 use super::samples::Pilot;
 use super::setup::Setup;
 use super::tally::{Place, Tally, relative_error};
-use crate::bsdf::{Direction, RandomNumbers, Samples, Subject};
+use crate::bsdf::{Direction, RandomNumbers, Samples, Subject, SubjectKind};
 use crate::evidence::Figure;
 use crate::registry::Role;
 use serde::{Deserialize, Serialize};
@@ -51,7 +52,7 @@ pub struct Variation {
 #[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
 pub enum Limit {
     /// Median angle, in radians, between samples and the nearest of mirror and
-    /// refracted directions, at this roughness.
+    /// refracted directions, of normals the surface's, at this roughness.
     Narrow {
         /// The angle.
         median: Figure,
@@ -153,6 +154,7 @@ impl Response {
             }
             numbers.extend(samples.weight);
         }
+        numbers.extend(parts::values(meter, &Setup { wo, ..setup.clone() }, wi)?);
         Ok(())
     }
 
@@ -188,8 +190,12 @@ fn limit(meter: &Meter, setup: &Setup, role: Role, value: &str) -> Result<Limit,
         Role::Roughness => {
             let expected = expected_directions(meter, setup)?;
             // The mirror direction, and the refracted one where there is one.
-            let lobes: Vec<Direction> =
-                expected.iter().enumerate().filter(|(k, _)| *k == 0 || *k > 3).map(|(_, d)| *d).collect();
+            let lobes: Vec<Direction> = match meter.description.kind {
+                SubjectKind::Distribution => vec![Direction::NORMAL],
+                _ => {
+                    expected.iter().enumerate().filter(|(k, _)| *k == 0 || *k > 3).map(|(_, d)| *d).collect()
+                }
+            };
             let mut angles: Vec<f64> = rows
                 .iter()
                 .map(|k| lobes.iter().map(|d| d.angle(samples.wi[*k])).fold(f64::INFINITY, f64::min))
@@ -306,6 +312,11 @@ impl Comparison {
                 Some(format!("{} channels here, {} there", meter.channels(), other.channels()));
             return Ok(found);
         }
+        if other.description.kind != meter.description.kind {
+            let kinds = [meter, other].map(|m| m.description.kind.noun());
+            found.incomparable = Some(format!("a {} here, a {} there", kinds[0], kinds[1]));
+            return Ok(found);
+        }
         let (mut a, mut b) = (Vec::new(), Vec::new());
         let tabulated = [meter, other].iter().any(|m| m.description.table.is_some());
         if tabulated && meter.description.has.eval && other.description.has.eval {
@@ -326,6 +337,18 @@ impl Comparison {
             meter.pdf(setup.wo, &wi, setup.transport, &mut a)?;
             other.pdf(setup.wo, &wi, setup.transport, &mut b)?;
             compare(&mut found.pdf, setup, &wi, ["pdf", "reference"], &a, &b);
+        }
+        let (a, b) = (parts::values(meter, setup, &wi)?, parts::values(other, setup, &wi)?);
+        // Transmittance and polarisation may be told by one alone.
+        let shared = match meter.description.kind {
+            SubjectKind::Fresnel => parts::COMPARED * meter.channels(),
+            _ => a.len(),
+        };
+        for (a, b) in a.into_iter().zip(b).take(shared) {
+            found.eval.look(relative_error(a, b, setup.floor()), || {
+                let place = Place { wo: setup.wo, ..Place::default() };
+                place.value("value", a).value("reference", b)
+            });
         }
         Ok(found)
     }

@@ -18,11 +18,19 @@ pub fn refracted_cosine(cos_i: f64, eta: f64) -> Option<f64> {
 /// beyond over the index on the incident side.
 #[inline]
 pub fn dielectric(cos_i: f64, eta: f64) -> f64 {
+    let [s, p] = dielectric_polarised(cos_i, eta);
+    (0.5 * (s + p)).min(1.0)
+}
+
+/// As [`dielectric`], of light polarised perpendicular to the plane of incidence
+/// (s) and parallel to it (p).
+#[inline]
+pub fn dielectric_polarised(cos_i: f64, eta: f64) -> [f64; 2] {
     if eta == 1.0 {
-        return 0.0;
+        return [0.0; 2];
     }
     let Some(cos_t) = refracted_cosine(cos_i, eta) else {
-        return 1.0;
+        return [1.0; 2];
     };
     // Both amplitudes with the difference in the numerator multiplied out, so
     // that nothing cancels as eta goes to 1 or at Brewster's angle.
@@ -31,7 +39,25 @@ pub fn dielectric(cos_i: f64, eta: f64) -> f64 {
     let eta2 = eta * eta;
     let s = contrast / ((cos_i + g) * (cos_i + g));
     let p = contrast * ((eta2 + 1.0) * cos_i * cos_i - 1.0) / ((eta2 * cos_i + g) * (eta2 * cos_i + g));
-    (0.5 * (s * s + p * p)).min(1.0)
+    [s * s, p * p]
+}
+
+/// Transmittance of a dielectric interface in [0, 1], a part of the flux, from
+/// the transmitted amplitudes 2 cos θi/(cos θi + η cos θt) and
+/// 2 η cos θi/(η² cos θi + η cos θt), squared, times η cos θt/cos θi.
+#[inline]
+pub fn dielectric_transmittance(cos_i: f64, eta: f64) -> f64 {
+    let Some(cos_t) = refracted_cosine(cos_i, eta) else {
+        return 0.0;
+    };
+    let g = eta * cos_t;
+    if g == 0.0 || cos_i == 0.0 {
+        // Grazing light passes where there is no interface.
+        return if eta == 1.0 { 1.0 } else { 0.0 };
+    }
+    let s = 4.0 * cos_i * g / ((cos_i + g) * (cos_i + g));
+    let p = 4.0 * eta * eta * cos_i * g / ((eta * eta * cos_i + g) * (eta * eta * cos_i + g));
+    0.5 * (s + p)
 }
 
 /// What a dielectric interface lets through, 1 − [`dielectric`], without the
@@ -46,6 +72,14 @@ pub fn transmitted(cos_i: f64, cos_t: f64, eta: f64) -> f64 {
 /// Reflectance of a conductor of complex index n + ik seen from vacuum.
 #[inline]
 pub fn conductor(cos_i: f64, n: f64, k: f64) -> f64 {
+    let [s, p] = conductor_polarised(cos_i, n, k);
+    0.5 * (s + p)
+}
+
+/// As [`conductor`], of light polarised perpendicular to the plane of incidence
+/// (s) and parallel to it (p).
+#[inline]
+pub fn conductor_polarised(cos_i: f64, n: f64, k: f64) -> [f64; 2] {
     let cos2 = cos_i * cos_i;
     let sin2 = 1.0 - cos2;
     // a + ib is the square root of (n + ik)² − sin²θ; ab = nk gives the
@@ -63,7 +97,7 @@ pub fn conductor(cos_i: f64, n: f64, k: f64) -> f64 {
     let s = ((a - cos_i).powi(2) + b2) / ((a + cos_i).powi(2) + b2);
     let q = a * cos_i;
     let p = s * ((q - sin2).powi(2) + b2 * cos2) / ((q + sin2).powi(2) + b2 * cos2);
-    0.5 * (s + p)
+    [s, p]
 }
 
 /// Schlick's approximation F₀ + (1 − F₀)(1 − cos θ)⁵ (C. Schlick, *An

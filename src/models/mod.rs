@@ -1,4 +1,4 @@
-//! Built-in BSDFs, one file each.
+//! Built-in BSDFs and their parts, one file each.
 
 use crate::registry::Model;
 
@@ -14,6 +14,7 @@ mod dielectric;
 mod disney;
 pub mod fresnel;
 mod gauss_legendre;
+mod interface;
 mod lafortune;
 mod lambert;
 mod largest_albedo;
@@ -63,5 +64,7 @@ pub fn all() -> Vec<Model> {
         microfacet::rough_plastic::model(),
         blend::model(),
         crate::measured::model(),
+        microfacet::masked::model(),
+        interface::model(),
     ]
 }

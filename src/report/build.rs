@@ -71,7 +71,8 @@ fn row(case: &CaseResult, finding: &Finding, files: &Files) -> CheckResult {
     let figure = |v: f64| Figure(v);
     let description = case.evidence.as_ref().map(|e| &e.description);
     // The claims of a case that was not run, or was given up, are in force too.
-    let asked = || Meter::describe(&*case.case.subject).map(|d| d.claims).unwrap_or_default();
+    let asked = || Meter::describe(&*case.case.subject).ok();
+    let kind = description.map(|d| d.kind).or_else(|| Some(asked()?.kind)).unwrap_or_default();
     let name = case.case.spelling.clone();
     let own_row = name.split(':').next() != Some(&case.case.group);
     CheckResult {
@@ -79,10 +80,15 @@ fn row(case: &CaseResult, finding: &Finding, files: &Files) -> CheckResult {
             label: own_row.then(|| case.case.group.clone()),
             name,
             parameters: case.case.parameters.clone(),
-            claims: description.map_or_else(|| case.case.claims.over(asked()), |d| d.claims),
+            claims: description.map_or_else(
+                || case.case.claims.over(asked().map(|d| d.claims).unwrap_or_default()),
+                |d| d.claims,
+            ),
         },
         check: finding.check.into(),
-        wo: Some(WoAngles { theta_deg: case.case.theta_deg, phi_deg: case.case.phi_deg }),
+        wo: kind
+            .has_directions()
+            .then_some(WoAngles { theta_deg: case.case.theta_deg, phi_deg: case.case.phi_deg }),
         verdict: outcome.verdict,
         effect: outcome.effect.clone(),
         p_value: outcome.ln_p.map(|p| figure(p.exp())),

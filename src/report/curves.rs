@@ -3,7 +3,7 @@
 use super::axes::{Axes, mark};
 use super::colours::{BAND, INK, LINES, Rgb, SOFT_INK};
 use super::figure::{Anchor, Figure, Pen, Type, shortened};
-use crate::bsdf::Transport;
+use crate::bsdf::{SubjectKind, Transport};
 use crate::evidence::Evidence;
 use crate::statistics::uniformity::kolmogorov_smirnov;
 
@@ -71,6 +71,10 @@ fn points(cases: &[&Evidence], channel: usize) -> Vec<Point> {
 /// curves are too coarse to show. `None` where fewer than two angles have both.
 pub fn albedo(subject: &str, cases: &[&Evidence]) -> Option<String> {
     let first = cases.first()?;
+    // The area of normals is 1 from everywhere, and no albedo.
+    if first.description.kind != SubjectKind::Bsdf {
+        return None;
+    }
     if !(first.description.has.eval && first.description.has.sample) {
         return None;
     }

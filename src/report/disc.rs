@@ -6,7 +6,7 @@ use super::disc_frame::{Disc, Window, azimuth, cross, ring};
 use super::disc_leaves::{CLIP, Leaves, in_sight, is_met, window};
 use super::figure::{Anchor, At, Figure, Pen, TEXT, Type, shortened};
 use super::numbers::{Trim, count, power_of_ten, three_digits, two_digits};
-use crate::bsdf::{Direction, Transport};
+use crate::bsdf::{Direction, SubjectKind, Transport};
 use crate::evidence::Evidence;
 use crate::sphere::Partition;
 
@@ -62,6 +62,9 @@ pub fn picture(evidence: &Evidence, caption: Caption) -> Option<String> {
     let mut facts = given(evidence);
     if let Some(draws) = evidence.draws.first() {
         facts += &format!(",  N = {}", count(draws.samples));
+    }
+    if evidence.description.kind == SubjectKind::Distribution {
+        facts += ",  directions are normals";
     }
     if let Some(d) = caption.root_d {
         facts += &format!(",  √D = {:.2} %", 100.0 * d);

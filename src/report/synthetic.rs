@@ -144,6 +144,8 @@ pub fn evidence(subject: &str, theta: f64, phi: f64, claimed: Lobe, sampled: Lob
         integrals: Some(integrals),
         draws: vec![draws],
         reference: None,
+        facets: None,
+        fresnel: None,
         evaluations: Evaluations::default(),
         halts: Vec::new(),
         corners: None,

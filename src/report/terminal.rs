@@ -73,6 +73,8 @@ fn short(check: &str) -> String {
         "discrete-lobes" => "dis",
         "sensitivity" => "sen",
         "reference" => "ref",
+        "distribution" => "ndf",
+        "fresnel" => "fre",
         "jacobian" => "jac",
         "efficiency" => "eff",
         other => return other.chars().take(3).collect(),

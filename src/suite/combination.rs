@@ -4,7 +4,7 @@ use super::file::{Entry, SUBJECT_KEYS};
 use super::mistake::Mistake;
 use super::pairs::product;
 use super::variants::variants;
-use crate::bsdf::{Claims, Subject};
+use crate::bsdf::{Claims, Subject, SubjectKind};
 use crate::evidence::{Company, Meter};
 use crate::registry::{Kind, Model, Parameters, Registry, Resolved, Spelling, Value, nearest};
 use std::collections::HashSet;
@@ -21,6 +21,7 @@ pub(super) struct Combination {
     pub spelling: String,
     pub parameters: Parameters,
     pub subject: Arc<dyn Subject>,
+    pub kind: SubjectKind,
     pub claims: Claims,
     pub company: Company<'static>,
 }
@@ -106,6 +107,7 @@ impl Combinations {
         let own = Meter::describe(&*subject).map(|d| d.claims).unwrap_or_default();
         self.all.push(Some(Combination {
             spelling,
+            kind: model.kind(),
             claims: entry.claims.over(own),
             company: Company {
                 variants: variants(registry, model, &parameters),

@@ -116,6 +116,11 @@ impl<'a> Factors<'a> {
             Some(only) => only == transport,
             None => claims.transport.modes().contains(&transport),
         };
+        // What has no directions is measured once, under the first of them.
+        let &[.., theta_index, _, phi_index] = row else { return false };
+        if !combination.kind.has_directions() && (theta_index, back, phi_index) != (0, false, 0) {
+            return false;
+        }
         let two_sides = self.file.sides && (claims.transmissive || claims.two_sided);
         mode && (!back || two_sides && !self.theta.contains(&(180.0 - theta)))
     }

@@ -42,6 +42,7 @@ impl Mistake {
             RegistryError::Parentheses { .. } => "no partner",
             RegistryError::Missing { .. } => "something is missing",
             RegistryError::Build { .. } | RegistryError::Nested { .. } => "cannot be built",
+            RegistryError::NotABsdf { .. } => "no BSDF",
         };
         let text = error.to_string();
         match text.rsplit_once("; ") {
