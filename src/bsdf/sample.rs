@@ -137,7 +137,7 @@ impl Samples {
 
     /// Appends one draw. The weight must have `self.channels` values.
     #[inline]
-    pub fn push(&mut self, sample: Option<Sample>) {
+    pub fn push(&mut self, sample: Option<&Sample>) {
         match sample {
             Some(s) => {
                 self.wi.push(s.wi);

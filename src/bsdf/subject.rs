@@ -165,21 +165,20 @@ impl<B: Bsdf> Subject for B {
         out: &mut Samples,
     ) -> Result<(), SubjectError> {
         let dimensions = Bsdf::describe(self).dimensions;
-        let mut draw = |u: &[f64]| {
+        for u in u.chunks_exact(dimensions.max(1)) {
             let sample = Bsdf::sample(self, wo, u, transport);
-            match sample {
-                Some(s) if s.weight.len() != out.channels => Err(SubjectError::WrongLength {
+            if let Some(s) = &sample
+                && s.weight.len() != out.channels
+            {
+                return Err(SubjectError::WrongLength {
                     function: "sample",
                     expected: out.channels,
                     got: s.weight.len(),
-                }),
-                sample => {
-                    out.push(sample);
-                    Ok(())
-                }
+                });
             }
-        };
-        u.chunks_exact(dimensions.max(1)).try_for_each(&mut draw)
+            out.push(sample.as_ref());
+        }
+        Ok(())
     }
 
     fn hints(&self, wo: Direction) -> Vec<Direction> {

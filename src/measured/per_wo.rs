@@ -70,7 +70,7 @@ impl<T: Reflector> Subject for PerWo<T> {
         let rows = u.chunks_exact(2);
         if wo.z > 0.0 {
             let given = self.0.given(wo, rows.len());
-            rows.for_each(|u| out.push(self.0.sample(&given, [u[0], u[1]])));
+            rows.for_each(|u| out.push(self.0.sample(&given, [u[0], u[1]]).as_ref()));
         } else {
             rows.for_each(|_| out.push(None));
         }

@@ -200,7 +200,7 @@ impl Subject for Measured {
                 let pdf = self.table.value(wo, wi) * wi.abs_cos_theta() / slice.flux;
                 Some(crate::bsdf::Sample { wi, weight: slice.flux.into(), pdf, lobe })
             });
-            out.push(draw);
+            out.push(draw.as_ref());
         }
         Ok(())
     }
