@@ -101,7 +101,10 @@ impl Integrals {
     ) -> Result<Self, Halt> {
         let channels = meter.channels();
         let tabulated = meter.description.table.is_some();
-        let markers = markers(meter, setup, partition, pilot)?;
+        let breaks = meter.cells(setup.wo)?.map(|native| Breaks::new(&native));
+        // A cell's neighbour knows nothing of it beyond a jump.
+        let reaching = breaks.is_none();
+        let markers = markers(meter, setup, partition, pilot, reaching)?;
         let goal = Goal {
             // pdf; f·cos and its square over pdf per channel; lost; two ratios.
             components: 1 + 2 * channels + 3,
@@ -117,7 +120,6 @@ impl Integrals {
         let cosine = CosineDensity::new(setup);
         let mut value = Vec::new();
         let mut density = Vec::new();
-        let breaks = meter.cells(setup.wo)?.map(|native| Breaks::new(&native));
         let leaf = integrate_within(breaks.as_ref(), partition, pilot, &markers, &goal, |wi, rows| {
             measure(meter, setup, wi, &mut value, &mut density)?;
             for (k, (wi, row)) in wi.iter().zip(rows.chunks_exact_mut(goal.components)).enumerate() {
@@ -228,6 +230,7 @@ fn markers(
     setup: &Setup,
     partition: &Partition,
     pilot: &[Point],
+    reaching: bool,
 ) -> Result<Vec<Marker>, Halt> {
     // Of equal area, whatever the partition's.
     let grid = Chart::new(setup.wo.phi());
@@ -245,13 +248,17 @@ fn markers(
     let (mut value, mut density) = (Vec::new(), Vec::new());
     measure(meter, setup, &directions, &mut value, &mut density)?;
     let channels = meter.channels();
+    // The distance at which the sampler's next point is to be expected.
+    let reach = |wi: &Direction, density: f64| {
+        let expected = density * chart.steradians(*wi) * pilot.len().max(1) as f64;
+        if reaching { 0.5 / expected.sqrt().max(1e3) } else { 0.0 }
+    };
     Ok(directions
         .iter()
         .enumerate()
         .map(|(k, wi)| Marker {
             at: chart.to_point(*wi),
-            // The distance at which the sampler's next point is to be expected.
-            reach: 0.5 / (density[k] * chart.steradians(*wi) * pilot.len().max(1) as f64).sqrt().max(1e3),
+            reach: reach(wi, density[k]),
             density: density[k],
             value: value[k * channels..][..channels].iter().sum::<f64>() * wi.abs_cos_theta(),
         })

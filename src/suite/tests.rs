@@ -275,8 +275,8 @@ fn variants_change_what_applies_and_go_to_limits() {
 
 #[test]
 fn embedded_suites_expand_to_the_size_they_are_meant_to_have() {
-    let registry = registry();
-    for (suite, sizes) in EMBEDDED.iter().zip([150..=200, 16..=32, 3000..=9000]) {
+    let registry = Registry::builtin();
+    for (suite, sizes) in EMBEDDED.iter().zip([300..=400, 30..=70, 3000..=20_000]) {
         SuiteFile::parse(suite.name, suite.text).unwrap_or_else(|e| panic!("{:#?}", e.lines()));
         let found = load(suite.name, suite.text, &registry, &Overrides::default());
         let plan = found.unwrap_or_else(|e| panic!("{}: {:#?}", suite.name, e.lines())).plan;
