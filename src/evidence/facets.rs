@@ -285,6 +285,7 @@ fn integral(
         value: GOAL,
         evaluations: MOST_EVALUATIONS,
         independent: false,
+        horizon: 0.0,
     };
     // The pilot's counts are of this slice alone, and so is its mass.
     let share = points.len().max(1) as f64 / drawn.len().max(1) as f64;

@@ -116,6 +116,7 @@ impl Integrals {
             value: if tabulated { 5e-4 } else { 2e-5 },
             evaluations,
             independent: tabulated,
+            horizon: setup.wo.z.abs(),
         };
         let cosine = CosineDensity::new(setup);
         let mut value = Vec::new();

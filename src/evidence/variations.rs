@@ -162,7 +162,9 @@ impl Response {
         if self.numbers.len() != other.numbers.len() {
             return f64::INFINITY;
         }
-        let errors = self.numbers.iter().zip(&other.numbers).map(|(a, b)| relative_error(*a, *b, 1e-12));
+        // However dark: a parameter that does nothing leaves every bit as it was.
+        let change = |(a, b): (&f64, &f64)| relative_error(*a, *b, f64::MIN_POSITIVE);
+        let errors = self.numbers.iter().zip(&other.numbers).map(change);
         errors.fold(0.0, f64::max)
     }
 }

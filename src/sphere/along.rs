@@ -185,6 +185,7 @@ mod tests {
                 value: 1e-9,
                 evaluations: 1 << 20,
                 independent: false,
+                horizon: 0.0,
             };
             let result = integrate_within(Some(&breaks), &tree, &[], &[], &goal, |wi, out| {
                 wi.iter().zip(out).for_each(|(wi, out)| *out = value(*wi) * wi.abs_cos_theta());

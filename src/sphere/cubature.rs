@@ -2,7 +2,7 @@
 
 use super::along::within;
 use super::breaks::Breaks;
-use super::chart::Point;
+use super::chart::{Chart, Point, Shape};
 use super::genz_malik::{NODES, Rule};
 use super::partition::{Cell, Partition};
 use crate::bsdf::Direction;
@@ -54,6 +54,10 @@ pub struct Goal {
     /// is three times the root of the sum of their squares. The goal of the values
     /// may then be missed: their errors are told.
     pub independent: bool,
+    /// Values may change within this cosine of the horizon, as they do where wo is so
+    /// near to it: cells at the horizon are halved towards it until they are as
+    /// narrow. No node of a wide one lies there, and both rules would agree.
+    pub horizon: f64,
 }
 
 impl Goal {
@@ -76,6 +80,9 @@ const NONCENTRALITY: f64 = 0.1;
 /// A cell is halved until its pilot points span this share of it on both
 /// axes: then no lobe that the pilot has seen is narrower than the rule sees.
 const FILL: f64 = 1.0 / 3.0;
+
+/// Nothing that carries flux changes nearer to the horizon than this cosine.
+const NEAREST_HORIZON: f64 = 1e-5;
 
 /// The same for half of the points: of 8 even ones, half lie in so little once in
 /// a hundred cells.
@@ -167,7 +174,7 @@ pub fn integrate_within<E>(
     mut f: impl FnMut(&[Direction], &mut [f64]) -> Result<(), E>,
 ) -> Result<LeafIntegrals, E> {
     let cells = breaks.filter(|b| b.chart() == *partition.chart()).map_or(&[][..], Breaks::cells);
-    let mut todo = first_patches(partition, cells, pilot, markers);
+    let mut todo = first_patches(partition, cells, pilot, markers, goal.horizon);
     let mut done: Vec<Patch> = Vec::new();
     // Values and errors of `done`, `components` each.
     let (mut values, mut errors): (Vec<f64>, Vec<f64>) = Default::default();
@@ -236,7 +243,13 @@ pub fn integrate_within<E>(
 
 /// The leaves, cut along the edges of `cells` and graded towards their pilot
 /// points.
-fn first_patches(partition: &Partition, cells: &[Cell], pilot: &[Point], markers: &[Marker]) -> Vec<Patch> {
+fn first_patches(
+    partition: &Partition,
+    cells: &[Cell],
+    pilot: &[Point],
+    markers: &[Marker],
+    horizon: f64,
+) -> Vec<Patch> {
     let mut of_leaf: Vec<Patch> = (0..partition.len())
         .map(|leaf| Patch {
             leaf: leaf as u32,
@@ -266,7 +279,8 @@ fn first_patches(partition: &Partition, cells: &[Cell], pilot: &[Point], markers
     let mut graded = Vec::with_capacity(of_leaf.len());
     let mut open = if cells.is_empty() { of_leaf } else { within(partition, cells, of_leaf) };
     while let Some(mut patch) = open.pop() {
-        match unfilled_axis(&patch) {
+        let axis = unfilled_axis(&patch).or_else(|| axis_to_horizon(partition.chart(), &patch.cell, horizon));
+        match axis {
             Some(axis) if patch.depth < DEEPEST => {
                 patch.axis = axis;
                 open.extend(halve(patch));
@@ -275,6 +289,18 @@ fn first_patches(partition: &Partition, cells: &[Cell], pilot: &[Point], markers
         }
     }
     graded
+}
+
+/// The axis that leads to the horizon, where a cell that lies at it is wider than
+/// the cosine `horizon`. Other charts than that of equal area are those of tables.
+fn axis_to_horizon(chart: &Chart, cell: &Cell, horizon: f64) -> Option<u8> {
+    if chart.shape() != Shape::EqualArea {
+        return None;
+    }
+    // |cos θ| = 1 − r², and r = 1 is half of a square's side off its middle.
+    let width = 0.25 * horizon.max(NEAREST_HORIZON);
+    let lies_at = |axis: usize| cell.lo[axis].fract() == 0.0 || cell.hi[axis].fract() == 0.0;
+    (0..2).find(|axis| horizon > 0.0 && lies_at(*axis) && cell.width(*axis) > width).map(|axis| axis as u8)
 }
 
 /// The axis on which the pilot points span the least share of the patch, if
@@ -474,7 +500,7 @@ fn to_split(
 
 #[cfg(test)]
 mod tests {
-    use super::super::chart::{Chart, STERADIANS};
+    use super::super::chart::STERADIANS;
     use super::*;
     use std::f64::consts::PI;
 
@@ -487,6 +513,7 @@ mod tests {
             value: 1e-6,
             evaluations: 1 << 20,
             independent: false,
+            horizon: 0.0,
         }
     }
 
@@ -620,6 +647,25 @@ mod tests {
         let with = run(pilot, &markers, f).total(0).0;
         assert!((without - 1.0).abs() > 2e-4, "{without}");
         assert!((with - 1.0).abs() < 1e-6, "{with}");
+    }
+
+    /// A layer at the horizon that no node of the leaves meets: f = min(cos θ/c, 1) has
+    /// the integral 2π (1 − c/2).
+    #[test]
+    fn finds_what_changes_at_the_horizon_only() {
+        let partition = Partition::build(Chart::new(0.0), vec![], 1024);
+        for c in [1e-2, 1e-3, 1e-4] {
+            let total = |horizon| {
+                let goal = Goal { horizon, ..goal(1) };
+                let layer = |wi: &[Direction], out: &mut [f64]| {
+                    wi.iter().zip(out).for_each(|(wi, out)| *out = (wi.z / c).clamp(0.0, 1.0));
+                    Ok::<_, ()>(())
+                };
+                integrate(&partition, &[], &[], &goal, layer).unwrap().total(0).0 / (2.0 * PI)
+            };
+            assert!((total(0.0) - 1.0).abs() < 0.1 * c, "{}", total(0.0));
+            assert!((total(c) - (1.0 - 0.5 * c)).abs() < 2e-6, "{c}: {}", total(c));
+        }
     }
 
     #[test]
