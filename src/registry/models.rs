@@ -1,0 +1,109 @@
+//! All models by name, and subjects made of them.
+
+use super::error::{RegistryError, nearest};
+use super::model::Model;
+use super::parameter::{Kind, Parameters, Value};
+use super::spelling::{Spelling, parenthesised};
+use crate::bsdf::{Subject, SubjectKind};
+use crate::models;
+use std::sync::Arc;
+
+/// The model that files are.
+pub const MEASURED: &str = "measured";
+
+/// All registered models.
+#[derive(Clone, Default)]
+pub struct Registry {
+    models: Arc<Vec<Model>>,
+}
+
+impl Registry {
+    /// No model.
+    pub fn empty() -> Self {
+        Self::default()
+    }
+
+    /// The models that come with gonio.
+    pub fn builtin() -> Self {
+        Self { models: Arc::new(models::all()) }
+    }
+
+    /// Adds a model; one of the same name is replaced.
+    pub fn register(mut self, model: Model) -> Self {
+        let models = Arc::make_mut(&mut self.models);
+        models.retain(|m| m.name() != model.name());
+        models.push(model);
+        self
+    }
+
+    /// All models.
+    pub fn models(&self) -> &[Model] {
+        &self.models
+    }
+
+    /// The model `name`.
+    pub fn model(&self, name: &str) -> Result<&Model, RegistryError> {
+        self.models.iter().find(|m| m.name() == name).ok_or_else(|| RegistryError::UnknownModel {
+            name: name.into(),
+            nearest: nearest(name, self.models.iter().map(Model::name)),
+            known: self.models.iter().map(|m| m.name().to_string()).collect(),
+        })
+    }
+
+    /// Looks up and builds a subject as it is written. A parameter that does not
+    /// apply goes back to its default and nested subjects are spelled out, so
+    /// that a subject has one spelling.
+    pub fn resolve(&self, spelling: &Spelling) -> Result<Resolved, RegistryError> {
+        let model = self.model(&spelling.name)?;
+        let mut parameters = model.complete(&spelling.parameters)?;
+        let applying: Vec<_> = spelling
+            .parameters
+            .iter()
+            .filter(|(name, _)| model.parameter(name).is_ok_and(|p| p.applies(&parameters)))
+            .cloned()
+            .collect();
+        parameters = model.complete(&applying)?;
+        for p in model.parameters().iter().filter(|p| matches!(p.kind, Kind::Subject { .. })) {
+            let (spelling, _) = self.nested(&p.name, parameters.text(&p.name))?;
+            parameters.0.insert(p.name.clone(), Value::Text(spelling));
+        }
+        let subject = model.build(&parameters, self)?;
+        Ok(Resolved { spelling: model.spell(&parameters), parameters, subject })
+    }
+
+    /// How the subject in a file is written, where `text` is no model's name but
+    /// the path of a file: `measured:file=PATH`.
+    pub fn spelling_of_file(&self, text: &str) -> Option<String> {
+        let name = text.split_once(':').map_or(text, |(name, _)| name);
+        let is_file = self.model(name).is_err() && std::path::Path::new(text).is_file();
+        is_file.then(|| format!("{MEASURED}:file={}", parenthesised(text)))
+    }
+
+    /// The subject that the parameter `parameter` names, and its one spelling.
+    pub(super) fn nested(
+        &self,
+        parameter: &str,
+        text: &str,
+    ) -> Result<(String, Arc<dyn Subject>), RegistryError> {
+        let resolved = text.parse().and_then(|spelling: Spelling| {
+            let kind = self.model(&spelling.name)?.kind();
+            if kind != SubjectKind::Bsdf {
+                return Err(RegistryError::NotABsdf { name: spelling.name, kind: kind.noun() });
+            }
+            self.resolve(&spelling)
+        });
+        let wrong = |e| RegistryError::Nested { parameter: parameter.into(), error: Box::new(e) };
+        resolved.map(|r| (r.spelling, r.subject)).map_err(wrong)
+    }
+}
+
+/// A subject that was looked up and built.
+#[derive(Clone)]
+pub struct Resolved {
+    /// Its one spelling.
+    pub spelling: String,
+    /// A value for each parameter.
+    pub parameters: Parameters,
+    /// The subject.
+    pub subject: Arc<dyn Subject>,
+}
