@@ -1,44 +1,20 @@
 //! Bugs that lobes of the classic models are known for, planted one at a time, and
 //! claims of these models that would be wrong.
 
+mod common;
+
+use common::measuring::{self, measure};
 use gonio::bsdf::{Bsdf, Description, Direction, Lobe, Sample, Spectrum, Subject, Transport};
 use gonio::checks::Verdict;
-use gonio::engine::{CaseResult, Options, run};
-use gonio::evidence::Company;
+use gonio::engine::CaseResult;
 use gonio::registry::Registry;
-use gonio::suite::{Case, ClaimsPatch, Plan, Settings};
+use gonio::suite::{Case, ClaimsPatch};
 use std::collections::BTreeSet;
 use std::f64::consts::{PI, TAU};
 use std::sync::Arc;
-use std::time::Duration;
 
 fn case(subject: Arc<dyn Subject>, theta: f64) -> Case<'static> {
-    Case {
-        group: "planted".into(),
-        spelling: "planted".into(),
-        subject,
-        parameters: Default::default(),
-        theta_deg: theta,
-        phi_deg: 137.0,
-        transport: Transport::Radiance,
-        claims: ClaimsPatch::default(),
-        waivers: Vec::new(),
-        company: Company::default(),
-        reference: None,
-        checks: Vec::new(),
-        settings: Settings { samples: 1 << 17, time_limit: Duration::from_secs(20), ..Settings::default() },
-    }
-}
-
-fn measure(cases: Vec<Case<'static>>) -> Vec<CaseResult<'static>> {
-    let plan = Plan {
-        suite: "test".into(),
-        seed: 1,
-        false_alarm: 1e-6,
-        share: None,
-        cases: cases.into_iter().map(Arc::new).collect(),
-    };
-    run(&plan, &Options::default(), &mut |_| {}).cases
+    measuring::case("planted", subject, theta, 1 << 17)
 }
 
 fn failed(results: &[CaseResult]) -> BTreeSet<&'static str> {

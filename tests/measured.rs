@@ -3,16 +3,17 @@
 //! passes; a file or a reader that is wrong in one way is found by the check
 //! whose identity that breaks.
 
+mod common;
+
+use common::measuring::{self, measure};
 use gonio::bsdf::{Description, Direction, Samples, Spectrum, Subject, SubjectError, Transport};
 use gonio::checks::Verdict;
-use gonio::engine::{CaseResult, Options, run};
-use gonio::evidence::Company;
+use gonio::engine::CaseResult;
 use gonio::measured::{HalfDifference, Interpolation, MerlTable, Reading, Resolution, Rgl, read};
 use gonio::registry::Registry;
-use gonio::suite::{Case, ClaimsPatch, Plan, Settings};
+use gonio::suite::Case;
 use std::f64::consts::{FRAC_PI_2, PI};
 use std::sync::{Arc, OnceLock};
-use std::time::Duration;
 
 const GLOSSY: &str = "torrance-sparrow:alpha=0.2,fresnel=conductor";
 const DIFFUSE: &str = "oren-nayar";
@@ -54,32 +55,8 @@ fn opened(bytes: &[u8]) -> Arc<dyn Subject> {
 }
 
 fn case(name: &str, subject: Arc<dyn Subject>, theta: f64, checks: &[&str]) -> Case<'static> {
-    Case {
-        group: name.into(),
-        spelling: name.into(),
-        subject,
-        parameters: Default::default(),
-        theta_deg: theta,
-        phi_deg: 137.0,
-        transport: Transport::Radiance,
-        claims: ClaimsPatch::default(),
-        waivers: Vec::new(),
-        company: Company::default(),
-        reference: None,
-        checks: checks.iter().map(|c| (*c).to_string()).collect(),
-        settings: Settings { samples: 1 << 17, time_limit: Duration::from_secs(60), ..Settings::default() },
-    }
-}
-
-fn measure(cases: Vec<Case<'static>>) -> Vec<CaseResult<'static>> {
-    let plan = Plan {
-        suite: "test".into(),
-        seed: 1,
-        false_alarm: 1e-6,
-        share: None,
-        cases: cases.into_iter().map(Arc::new).collect(),
-    };
-    run(&plan, &Options::default(), &mut |_| {}).cases
+    let checks = checks.iter().map(|c| (*c).to_string()).collect();
+    Case { checks, ..measuring::case(name, subject, theta, 1 << 17) }
 }
 
 /// Each finding with this verdict, and what it said.
