@@ -6,6 +6,7 @@ mod blend;
 mod clipped_cosine;
 mod conductor;
 mod dielectric;
+pub mod factored;
 pub mod fresnel;
 mod lambert;
 mod metal;
@@ -32,5 +33,6 @@ pub fn all() -> Vec<Model> {
         microfacet::torrance_sparrow::model(),
         microfacet::ggx_multiscatter::model(),
         blend::model(),
+        factored::model(),
     ]
 }

@@ -1,0 +1,242 @@
+//! A subject whose directions are drawn by factors.
+
+use super::table::Table;
+use super::{FactoredDensity, Factorisation, Given, Grid, Parameterisation, cache};
+use crate::bsdf::{
+    Cosine, Description, Direction, Has, Lobe, OffSupport, RandomNumbers, Sample, Samples, Spectrum, Subject,
+    SubjectError, Transport,
+};
+use crate::models::blend::is_discrete;
+use crate::registry::Model;
+use std::sync::Arc;
+
+/// Another subject's values with a sampler and a density of its own making: f·cos θi,
+/// channels averaged, is tabulated and factored. eval and claims are the subject's;
+/// the sampler it may have is not used.
+pub struct Factored {
+    subject: Arc<dyn Subject>,
+    description: Description,
+    density: Arc<FactoredDensity>,
+}
+
+/// What [`Factored::new`] does with a subject.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub struct Options {
+    /// What the factors are functions of; `None` takes what gives the lower variance.
+    pub over: Option<Parameterisation>,
+    /// Cells in θp.
+    pub theta: usize,
+    /// Cells in φp; an anisotropic subject is tabulated at half as many azimuths of wo.
+    pub phi: usize,
+    /// Polar angles of wo.
+    pub theta_o: usize,
+    /// Numbers of terms, and the cosine's share.
+    pub factorisation: Factorisation,
+}
+
+impl Default for Options {
+    fn default() -> Self {
+        Self {
+            over: None,
+            theta: 48,
+            phi: 32,
+            theta_o: 16,
+            factorisation: Factorisation { outer: 4, inner: 3, floor: 0.02 },
+        }
+    }
+}
+
+/// A grid that puts more of the light at some wo elsewhere than it is does not see
+/// the lobe.
+const MISPLACED: f64 = 0.3;
+
+/// The registered model `factored`.
+pub(in crate::models) fn model() -> Model {
+    let default = Options::default();
+    let by = default.factorisation;
+    Model::composed("factored", "another subject, sampled by factors (Lawrence et al. 2004)", |p, parts| {
+        let count = |name: &str| match p.number(name) {
+            n if n.fract() == 0.0 => Ok(n as usize),
+            n => Err(format!("{name} = {n} is no whole number: write {name}={}", n.round())),
+        };
+        let over = match p.text("over") {
+            "half-angle" => Some(Parameterisation::HalfAngle),
+            "incident" => Some(Parameterisation::Incident),
+            _ => None,
+        };
+        let floor = p.number("floor");
+        let factorisation = Factorisation { outer: count("outer")?, inner: count("inner")?, floor };
+        let options = Options {
+            over,
+            theta: count("theta")?,
+            phi: count("phi")?,
+            theta_o: count("theta_o")?,
+            factorisation,
+        };
+        Factored::new(parts.subject("subject"), options)
+    })
+    .subject("subject", "torrance-sparrow", "whose values are drawn; it reflects, without discrete lobes")
+    .choice("over", &["auto", "half-angle", "incident"], "which direction the factors are functions of")
+    .number("theta", default.theta as f64, 8.0..=64.0, "cells in its polar angle")
+    .number("phi", default.phi as f64, 8.0..=64.0, "cells in its azimuth")
+    .number("theta_o", default.theta_o as f64, 4.0..=32.0, "polar angles of wo")
+    .number("outer", by.outer as f64, 1.0..=8.0, "terms F(wo) G(wp)")
+    .number("inner", by.inner as f64, 1.0..=5.0, "terms u(θ) v(φ) of each G")
+    .number("floor", by.floor, 1e-3..=0.5, "share of draws that follow the cosine")
+}
+
+impl Factored {
+    /// Tabulates and factors `subject`. `Err` with the reason where it cannot be
+    /// factored: no eval, light on both sides, random values, discrete lobes, or
+    /// lobes narrower than the grid.
+    pub fn new(subject: Arc<dyn Subject>, options: Options) -> Result<Self, String> {
+        let own = subject.describe();
+        refuse(&*subject, &own)?;
+        let choices = match options.over {
+            Some(over) => vec![over],
+            None => vec![Parameterisation::HalfAngle, Parameterisation::Incident],
+        };
+        let azimuths = if own.claims.isotropic { 1 } else { (options.phi / 2).max(4) };
+        let given = Given::new(options.theta_o, azimuths);
+        let mut best: Option<(f64, Table, Arc<FactoredDensity>)> = None;
+        for over in choices {
+            let grid = Grid::new(over, options.theta, options.phi);
+            let table = Table::of(&*subject, &grid, &given)?;
+            let isotropic = own.claims.isotropic;
+            let density = cache::factored(&table, grid, given.clone(), isotropic, options.factorisation);
+            let effective = density.effective(&table);
+            if best.as_ref().is_none_or(|b| effective > b.0) {
+                best = Some((effective, table, density));
+            }
+        }
+        let (_, table, density) = best.expect("there is a choice");
+        seen(&table, density.grid(), &given)?;
+        let description = Description { name: "factored".into(), dimensions: 3, has: Has::default(), ..own };
+        let description = description.claims(|c| {
+            c.off_support = OffSupport::NoSample;
+            c.rng = RandomNumbers::External;
+        });
+        Ok(Self { subject, description, density })
+    }
+
+    /// The density that is drawn from.
+    pub fn density(&self) -> &FactoredDensity {
+        &self.density
+    }
+
+    /// On which side wo is: a two-sided subject is turned over.
+    fn side(&self, wo: Direction) -> f64 {
+        if self.description.claims.two_sided && wo.z < 0.0 { -1.0 } else { 1.0 }
+    }
+}
+
+/// Why a subject cannot be factored, whatever the grid.
+fn refuse(subject: &dyn Subject, own: &Description) -> Result<(), String> {
+    let name = &own.name;
+    if !own.has.eval {
+        return Err(format!("`{name}` has no eval: there are no values to factor"));
+    }
+    if own.claims.transmissive || !own.claims.reflective {
+        return Err(format!(
+            "`{name}` transmits: only reflection is factored; give it a subject that is reflective and not \
+             transmissive"
+        ));
+    }
+    if own.claims.stochastic {
+        return Err(format!("the values of `{name}` are random: only what repeats itself can be factored"));
+    }
+    if is_discrete(subject, own) {
+        return Err(format!(
+            "`{name}` has a discrete lobe, which no density holds: give it a subject without (as \
+             torrance-sparrow in place of conductor)"
+        ));
+    }
+    Ok(())
+}
+
+/// `Err` where the grid does not see the lobes.
+fn seen(table: &Table, grid: &Grid, given: &Given) -> Result<(), String> {
+    let worst = (0..given.len())
+        .map(|row| (row, table.misplaced(grid, row)))
+        .max_by(|a, b| a.1.total_cmp(&b.1))
+        .filter(|(_, share)| !(*share <= MISPLACED));
+    let Some((row, share)) = worst else { return Ok(()) };
+    let wo = given.direction(row);
+    Err(format!(
+        "its lobe at wo = (θ {:.1}°, φ {:.1}°) is narrower than the grid of {} × {} cells, the first {:.2}° wide: \
+         {:.0} % of the light lies elsewhere than between its knots; use more theta and phi, or a rougher subject",
+        wo.theta().to_degrees(),
+        wo.phi().to_degrees(),
+        grid.t.len() - 1,
+        grid.phi.len() - 1,
+        grid.finest(),
+        100.0 * share
+    ))
+}
+
+impl Subject for Factored {
+    fn describe(&self) -> Description {
+        self.description.clone()
+    }
+
+    fn eval(
+        &self,
+        wo: Direction,
+        wi: &[Direction],
+        transport: Transport,
+        out: &mut [f64],
+    ) -> Result<(), SubjectError> {
+        self.subject.eval(wo, wi, transport, out)
+    }
+
+    fn pdf(
+        &self,
+        wo: Direction,
+        wi: &[Direction],
+        _: Transport,
+        out: &mut [f64],
+    ) -> Result<(), SubjectError> {
+        let side = self.side(wo);
+        let over = |w: Direction| Direction::new(w.x, w.y, side * w.z);
+        let density = self.density.given(over(wo));
+        wi.iter().zip(out).for_each(|(wi, p)| *p = density.pdf(over(*wi)));
+        Ok(())
+    }
+
+    fn sample(
+        &self,
+        wo: Direction,
+        u: &[f64],
+        transport: Transport,
+        out: &mut Samples,
+    ) -> Result<(), SubjectError> {
+        let side = self.side(wo);
+        let over = |w: Direction| Direction::new(w.x, w.y, side * w.z);
+        let density = self.density.given(over(wo));
+        let drawn: Vec<Option<Direction>> =
+            u.chunks_exact(3).map(|u| density.sample([u[0], u[1], u[2]])).collect();
+        let wi: Vec<Direction> = drawn.iter().flatten().map(|w| over(*w)).collect();
+        let channels = self.description.channels.len();
+        let mut value = vec![0.0; wi.len() * channels];
+        self.subject.eval(wo, &wi, transport, &mut value)?;
+        let lobe = match self.density.grid().over {
+            Parameterisation::HalfAngle => Lobe::GLOSSY_REFLECTION,
+            Parameterisation::Incident => Lobe::DIFFUSE_REFLECTION,
+        };
+        let mut values = value.chunks_exact(channels);
+        for front in drawn {
+            out.push(front.map(|front| {
+                let wi = over(front);
+                let pdf = density.pdf(front);
+                let value = Spectrum::from(values.next().expect("each direction has its values"));
+                let cosine = if self.description.claims.cosine == Cosine::Included { 1.0 } else { front.z };
+                Sample { wi, weight: value * (cosine / pdf), pdf, lobe }
+            }));
+        }
+        Ok(())
+    }
+
+    fn hints(&self, wo: Direction) -> Vec<Direction> {
+        self.subject.hints(wo)
+    }
+}
