@@ -18,11 +18,11 @@ pub fn factored(
 ) -> Arc<FactoredDensity> {
     let mut hash = blake3::Hasher::new();
     let half_angle = grid.over == Parameterisation::HalfAngle;
-    let shape = [grid.t.len(), grid.phi.len(), given.len(), by.outer, by.inner].map(|n| n as u64);
+    let shape = [grid.t.intervals(), grid.phi.intervals(), given.len(), by.outer, by.inner].map(|n| n as u64);
     hash.update(&shape.map(u64::to_le_bytes).concat());
     hash.update(&[u8::from(half_angle), u8::from(isotropic)]);
     hash.update(&by.floor.to_le_bytes());
-    for value in &table.knots.values {
+    for value in &table.sites.values {
         hash.update(&value.to_le_bytes());
     }
     let key = *hash.finalize().as_bytes();

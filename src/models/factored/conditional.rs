@@ -1,6 +1,6 @@
 //! The factored density at one wo.
 
-use super::{FactoredDensity, Grid};
+use super::{FactoredDensity, Grid, bezier};
 use crate::bsdf::Direction;
 use std::f64::consts::{FRAC_1_PI, TAU};
 
@@ -34,16 +34,14 @@ impl<'a> Conditional<'a> {
         let even = self.cosine * FRAC_1_PI * wi.z;
         let Some((wp, jacobian)) = self.density.grid.over.forward(self.wo, wi) else { return even };
         let spot = self.density.grid.locate(self.turned(wp, -self.turn.1));
-        let n = self.probabilities.len();
         let ((i, a), (k, b)) = (spot.t, spot.phi);
-        let at = |values: &'a [f64], knot: usize| &values[knot * n..][..n];
-        let (u0, u1) = (at(&self.density.t_values, i), at(&self.density.t_values, i + 1));
-        let (v0, v1) = (at(&self.density.phi_values, k), at(&self.density.phi_values, k + 1));
+        let (u, v) = (self.density.t.interval(i), self.density.phi.interval(k));
         let mut sum = 0.0;
-        for l in 0..n {
-            let u = u0[l] + a * (u1[l] - u0[l]);
-            let v = v0[l] + b * (v1[l] - v0[l]);
-            sum += self.probabilities[l] * u * v;
+        for (l, p) in self.probabilities.iter().enumerate() {
+            let v = bezier(v.map(|c| c[l]), b);
+            // At the pole there is no azimuth.
+            let pole = if i == 0 { bezier([u[0][l], 0.0, 0.0], a) } else { 0.0 };
+            sum += p * ((bezier(u.map(|c| c[l]), a) - pole) * v + pole / TAU);
         }
         even + jacobian * sum
     }
@@ -67,7 +65,13 @@ impl<'a> Conditional<'a> {
         // Rounding may leave the sum a little below 1.
         let last = || self.probabilities.iter().rposition(|p| *p > 0.0);
         let term = &self.density.terms()[chosen.or_else(last)?];
-        let wp = Grid::direction(term.t.sample(u[1]), term.phi.sample(u[2]));
+        let t = term.t.sample(u[1]);
+        // What of the density at t belongs to the pole is even in azimuth.
+        let share = (t / self.density.grid.t.at()[1]).min(1.0);
+        let curve = [term.t.value(0), term.t.middle(0), term.t.value(1)];
+        let pole = bezier([curve[0], 0.0, 0.0], share);
+        let even = if pole > 0.0 { pole / bezier(curve, share) } else { 0.0 };
+        let wp = Grid::direction(t, term.phi.sample_evened(u[2], even));
         let wp = self.turned(wp, self.turn.1);
         self.density.grid.over.backward(self.wo, wp).map(|(wi, _)| wi)
     }

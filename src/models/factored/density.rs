@@ -1,9 +1,8 @@
 //! The factored density, and how it comes from a table.
 
 use super::table::Table;
-use super::{Conditional, Given, Grid, Matrix, PiecewiseLinear};
+use super::{Conditional, Given, Grid, Matrix, SplineDensity};
 use crate::bsdf::Direction;
-use std::f64::consts::TAU;
 
 /// How a table is factored.
 #[derive(Clone, Copy, Debug, PartialEq)]
@@ -17,13 +16,13 @@ pub struct Factorisation {
     pub floor: f64,
 }
 
-/// One term u(θp) v(φp).
+/// One term u(θp) v(φp); what u has of its first coefficient, the pole's, is even in φ.
 #[derive(Clone, Debug, PartialEq)]
 pub struct Term {
     /// Density in t = 1 − cos θp.
-    pub t: PiecewiseLinear,
+    pub t: SplineDensity,
     /// Density in φp, per radian.
-    pub phi: PiecewiseLinear,
+    pub phi: SplineDensity,
 }
 
 /// p(ωp | ωo) = Σ_l F_l(ωo) u_l(θp) v_l(φp), each u and v a density and each F a
@@ -38,9 +37,36 @@ pub struct FactoredDensity {
     /// `probabilities[row * terms + l]` = F_l at direction `row` of `given`; a row
     /// adds up to 1, or to 0 where the subject is black.
     probabilities: Matrix,
-    /// Values of each term at the knots, `[knot * terms + l]`.
-    pub(super) t_values: Vec<f64>,
-    pub(super) phi_values: Vec<f64>,
+    pub(super) t: Curves,
+    pub(super) phi: Curves,
+}
+
+/// The splines of all terms, side by side.
+#[derive(Clone, Debug, PartialEq)]
+pub(super) struct Curves {
+    terms: usize,
+    values: Vec<f64>,
+    middles: Vec<f64>,
+}
+
+impl Curves {
+    fn new(terms: &[Term], intervals: usize, of: fn(&Term) -> &SplineDensity) -> Self {
+        let all = |n: usize, number: fn(&SplineDensity, usize) -> f64| {
+            (0..n).flat_map(|k| terms.iter().map(move |term| number(of(term), k))).collect()
+        };
+        Self {
+            terms: terms.len(),
+            values: all(intervals + 1, SplineDensity::value),
+            middles: all(intervals, SplineDensity::middle),
+        }
+    }
+
+    /// Of interval `k`: left values, middle coefficients and right values, by term.
+    #[inline]
+    pub(super) fn interval(&self, k: usize) -> [&[f64]; 3] {
+        let n = self.terms;
+        [&self.values[k * n..][..n], &self.middles[k * n..][..n], &self.values[(k + 1) * n..][..n]]
+    }
 }
 
 /// Updates of each factorisation: none of the built-in subjects gains a tenth of a
@@ -52,19 +78,23 @@ impl FactoredDensity {
     /// F_j G_j, and each G_j, a matrix of θp and φp, again. Last, each u v gets the
     /// probability of its own that goes best with each wo.
     pub fn new(table: &Table, grid: Grid, given: Given, isotropic: bool, by: Factorisation) -> Self {
-        let cells = grid.phi.len() - 1;
-        let (t_weights, phi_weight) = (grid.t_weights(), grid.phi_weight());
-        let mut mass = table.knots.clone();
+        let cells = grid.phi.intervals();
+        let (t_weights, phi_weights) = (grid.t.weights(), grid.phi.weights());
+        let mut mass = table.sites.clone();
         for row in mass.values.chunks_exact_mut(mass.columns) {
-            row.iter_mut().enumerate().for_each(|(k, v)| *v *= t_weights[k / cells] * phi_weight);
+            row.iter_mut().enumerate().for_each(|(k, v)| *v *= t_weights[k / cells] * phi_weights[k % cells]);
             let sum: f64 = row.iter().sum();
             row.iter_mut().for_each(|v| *v = if sum > 0.0 { *v / sum } else { 0.0 });
         }
-        // u v of masses at knots.
+        // u v of masses at the sites.
         let term = |u: &[f64], v: &[f64]| -> Option<Term> {
-            let u: Vec<f64> = u.iter().zip(&t_weights).map(|(m, w)| m / w).collect();
-            let v: Vec<f64> = v.iter().chain(&v[..1]).copied().collect();
-            Some(Term { t: PiecewiseLinear::new(&grid.t, &u)?, phi: PiecewiseLinear::new(&grid.phi, &v)? })
+            let density = |masses: &[f64], weights: &[f64]| -> Vec<f64> {
+                masses.iter().zip(weights).map(|(m, w)| m / w).collect()
+            };
+            Some(Term {
+                t: SplineDensity::new(&grid.t, &density(u, &t_weights))?,
+                phi: SplineDensity::new(&grid.phi, &density(v, &phi_weights))?,
+            })
         };
         let mut terms = Vec::new();
         let mut products = Vec::new();
@@ -100,12 +130,9 @@ impl FactoredDensity {
         } else {
             probabilities.resize(given.len() * terms.len(), 0.0);
         }
-        let values = |knots: usize, of: fn(&Term) -> &PiecewiseLinear| {
-            (0..knots).flat_map(|k| terms.iter().map(move |term| of(term).value(k))).collect()
-        };
         Self {
-            t_values: values(grid.t.len(), |term| &term.t),
-            phi_values: values(grid.phi.len(), |term| &term.phi),
+            t: Curves::new(&terms, grid.t.intervals(), |term| &term.t),
+            phi: Curves::new(&terms, cells, |term| &term.phi),
             probabilities: Matrix { columns: terms.len().max(1), values: probabilities },
             terms,
             grid,
@@ -140,31 +167,5 @@ impl FactoredDensity {
             sum.iter_mut().zip(row).for_each(|(s, p)| *s += share * p);
         }
         sum
-    }
-
-    /// Effective draws per draw, (∫f cos)²/∫(f cos)²/p, averaged over the table's
-    /// directions, by the middles of its cells.
-    pub fn effective(&self, table: &Table) -> f64 {
-        let cells = self.grid.phi.len() - 1;
-        let middle = |knots: &[f64], k: usize| 0.5 * (knots[k] + knots[k + 1]);
-        let (mut sum, mut lit) = (0.0, 0.0);
-        for (row, values) in table.middles.rows().enumerate() {
-            let wo = self.given.direction(row);
-            let density = self.given(wo);
-            let (mut first, mut second) = (0.0, 0.0);
-            for (k, value) in values.iter().enumerate().filter(|(_, v)| **v > 0.0) {
-                let (i, j) = (k / cells, k % cells);
-                let wp = Grid::direction(middle(&self.grid.t, i), middle(&self.grid.phi, j));
-                let Some((wi, jacobian)) = self.grid.over.backward(wo, wp) else { continue };
-                let area = (self.grid.t[i + 1] - self.grid.t[i]) * TAU / cells as f64;
-                first += value * area;
-                second += value * value * jacobian / density.pdf(wi) * area;
-            }
-            if second > 0.0 {
-                sum += first * first / second;
-                lit += 1.0;
-            }
-        }
-        if lit > 0.0 { sum / lit } else { 1.0 }
     }
 }

@@ -1,20 +1,20 @@
 //! The grids on which a subject is tabulated before it is factored.
 
-use super::Parameterisation;
+use super::{Knots, Parameterisation};
 use crate::bsdf::Direction;
 use std::f64::consts::{FRAC_PI_2, PI, TAU};
 
-/// Knots of ωp: t = 1 − cos θp, which makes equal areas of equal steps, and the
-/// azimuth φp around the full circle. A function that is linear in each has no
-/// singular point at the pole.
+/// Knots of ωp: t = 1 − cos θp, which makes equal areas of equal steps, so that a
+/// smooth function of t is a smooth density about the pole; and the azimuth φp
+/// around the full circle.
 #[derive(Clone, Debug, PartialEq)]
 pub struct Grid {
     /// What ωp is.
     pub over: Parameterisation,
     /// Knots in t from 0 to 1.
-    pub t: Vec<f64>,
-    /// Knots in φ from −π to π; the last is the first again.
-    pub phi: Vec<f64>,
+    pub t: Knots,
+    /// Knots in φ from −π to π.
+    pub phi: Knots,
 }
 
 /// A cell of a [`Grid`], and a place in it.
@@ -39,13 +39,12 @@ impl Grid {
         let mut t: Vec<f64> = (0..=theta).map(knot).collect();
         t[theta] = 1.0;
         let phi = (0..=phi).map(|k| -PI + TAU * k as f64 / phi as f64).collect();
-        Self { over, t, phi }
+        Self { over, t: Knots::new(t, false), phi: Knots::new(phi, true) }
     }
 
-    /// Where the grid is widest at this number of degrees from its pole: width of
-    /// the first cell in degrees.
-    pub fn finest(&self) -> f64 {
-        (1.0 - self.t[1]).acos().to_degrees()
+    /// Width in degrees of the first cell in θp.
+    pub fn first_width(&self) -> f64 {
+        (1.0 - self.t.at()[1]).acos().to_degrees()
     }
 
     /// The direction at (t, φ).
@@ -61,23 +60,13 @@ impl Grid {
     pub fn locate(&self, wp: Direction) -> Spot {
         // 1 − z without its cancellation.
         let t = (wp.x * wp.x + wp.y * wp.y) / (1.0 + wp.z);
-        let below = self.t[1..self.t.len() - 1].partition_point(|k| *k <= t);
-        let share = ((t - self.t[below]) / (self.t[below + 1] - self.t[below])).clamp(0.0, 1.0);
-        let cells = self.phi.len() - 1;
+        let knots = self.t.at();
+        let below = knots[1..knots.len() - 1].partition_point(|k| *k <= t);
+        let share = ((t - knots[below]) / (knots[below + 1] - knots[below])).clamp(0.0, 1.0);
+        let cells = self.phi.intervals();
         let along = (wp.phi() + PI) / TAU * cells as f64;
         let cell = (along as usize).min(cells - 1);
         Spot { t: (below, share), phi: (cell, (along - cell as f64).clamp(0.0, 1.0)) }
-    }
-
-    /// The integral over t of each knot's hat function.
-    pub fn t_weights(&self) -> Vec<f64> {
-        let last = self.t.len() - 1;
-        (0..=last).map(|k| 0.5 * (self.t[(k + 1).min(last)] - self.t[k.saturating_sub(1)])).collect()
-    }
-
-    /// The integral over φ of each knot's hat function.
-    pub fn phi_weight(&self) -> f64 {
-        TAU / (self.phi.len() - 1) as f64
     }
 }
 
@@ -149,13 +138,12 @@ mod tests {
         for over in [Parameterisation::HalfAngle, Parameterisation::Incident] {
             let grid = Grid::new(over, 9, 7);
             for (i, k) in (0..9).flat_map(|i| (0..7).map(move |k| (i, k))) {
-                let t = 0.3 * grid.t[i] + 0.7 * grid.t[i + 1];
-                let phi = 0.6 * grid.phi[k] + 0.4 * grid.phi[k + 1];
+                let t = 0.3 * grid.t.at()[i] + 0.7 * grid.t.at()[i + 1];
+                let phi = 0.6 * grid.phi.at()[k] + 0.4 * grid.phi.at()[k + 1];
                 let spot = grid.locate(Grid::direction(t, phi));
                 assert_eq!((spot.t.0, spot.phi.0), (i, k));
                 assert!((spot.t.1 - 0.7).abs() < 1e-9 && (spot.phi.1 - 0.4).abs() < 1e-9);
             }
-            assert!((grid.t_weights().iter().sum::<f64>() - 1.0).abs() < 1e-15);
             // The corners of the hemisphere are in it.
             for wp in [Direction::NORMAL, Direction::new(-1.0, -0.0, 0.0), Direction::new(1.0, 0.0, 0.0)] {
                 let spot = grid.locate(wp);

@@ -8,7 +8,7 @@ mod density;
 mod grid;
 mod non_negative;
 mod parameterisation;
-mod piecewise_linear;
+mod spline;
 mod subject;
 mod table;
 
@@ -17,6 +17,6 @@ pub use density::{FactoredDensity, Factorisation, Term};
 pub use grid::{Given, Grid};
 pub use non_negative::{Factors, Matrix};
 pub use parameterisation::Parameterisation;
-pub use piecewise_linear::PiecewiseLinear;
+pub use spline::{Knots, SplineDensity, bezier};
 pub(super) use subject::model;
 pub use subject::{Factored, Options};

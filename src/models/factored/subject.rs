@@ -22,8 +22,8 @@ pub struct Factored {
 /// What [`Factored::new`] does with a subject.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct Options {
-    /// What the factors are functions of; `None` takes what gives the lower variance.
-    pub over: Option<Parameterisation>,
+    /// What the factors are functions of.
+    pub over: Parameterisation,
     /// Cells in θp.
     pub theta: usize,
     /// Cells in φp; an anisotropic subject is tabulated at half as many azimuths of wo.
@@ -37,7 +37,7 @@ pub struct Options {
 impl Default for Options {
     fn default() -> Self {
         Self {
-            over: None,
+            over: Parameterisation::HalfAngle,
             theta: 48,
             phi: 32,
             theta_o: 16,
@@ -60,9 +60,8 @@ pub(in crate::models) fn model() -> Model {
             n => Err(format!("{name} = {n} is no whole number: write {name}={}", n.round())),
         };
         let over = match p.text("over") {
-            "half-angle" => Some(Parameterisation::HalfAngle),
-            "incident" => Some(Parameterisation::Incident),
-            _ => None,
+            "incident" => Parameterisation::Incident,
+            _ => Parameterisation::HalfAngle,
         };
         let floor = p.number("floor");
         let factorisation = Factorisation { outer: count("outer")?, inner: count("inner")?, floor };
@@ -76,7 +75,11 @@ pub(in crate::models) fn model() -> Model {
         Factored::new(parts.subject("subject"), options)
     })
     .subject("subject", "torrance-sparrow", "whose values are drawn; it reflects, without discrete lobes")
-    .choice("over", &["auto", "half-angle", "incident"], "which direction the factors are functions of")
+    .choice(
+        "over",
+        &["half-angle", "incident"],
+        "what the factors are functions of; wi itself suits diffuse reflection",
+    )
     .number("theta", default.theta as f64, 8.0..=64.0, "cells in its polar angle")
     .number("phi", default.phi as f64, 8.0..=64.0, "cells in its azimuth")
     .number("theta_o", default.theta_o as f64, 4.0..=32.0, "polar angles of wo")
@@ -92,25 +95,12 @@ impl Factored {
     pub fn new(subject: Arc<dyn Subject>, options: Options) -> Result<Self, String> {
         let own = subject.describe();
         refuse(&*subject, &own)?;
-        let choices = match options.over {
-            Some(over) => vec![over],
-            None => vec![Parameterisation::HalfAngle, Parameterisation::Incident],
-        };
-        let azimuths = if own.claims.isotropic { 1 } else { (options.phi / 2).max(4) };
-        let given = Given::new(options.theta_o, azimuths);
-        let mut best: Option<(f64, Table, Arc<FactoredDensity>)> = None;
-        for over in choices {
-            let grid = Grid::new(over, options.theta, options.phi);
-            let table = Table::of(&*subject, &grid, &given)?;
-            let isotropic = own.claims.isotropic;
-            let density = cache::factored(&table, grid, given.clone(), isotropic, options.factorisation);
-            let effective = density.effective(&table);
-            if best.as_ref().is_none_or(|b| effective > b.0) {
-                best = Some((effective, table, density));
-            }
-        }
-        let (_, table, density) = best.expect("there is a choice");
-        seen(&table, density.grid(), &given)?;
+        let isotropic = own.claims.isotropic;
+        let given = Given::new(options.theta_o, if isotropic { 1 } else { (options.phi / 2).max(4) });
+        let grid = Grid::new(options.over, options.theta, options.phi);
+        let table = Table::of(&*subject, &grid, &given)?;
+        seen(&table, &grid, &given)?;
+        let density = cache::factored(&table, grid, given, isotropic, options.factorisation);
         let description = Description { name: "factored".into(), dimensions: 3, has: Has::default(), ..own };
         let description = description.claims(|c| {
             c.off_support = OffSupport::NoSample;
@@ -164,12 +154,12 @@ fn seen(table: &Table, grid: &Grid, given: &Given) -> Result<(), String> {
     let wo = given.direction(row);
     Err(format!(
         "its lobe at wo = (θ {:.1}°, φ {:.1}°) is narrower than the grid of {} × {} cells, the first {:.2}° wide: \
-         {:.0} % of the light lies elsewhere than between its knots; use more theta and phi, or a rougher subject",
+         {:.0} % of the light lies elsewhere than its splines put it; use more theta and phi, or a rougher subject",
         wo.theta().to_degrees(),
         wo.phi().to_degrees(),
-        grid.t.len() - 1,
-        grid.phi.len() - 1,
-        grid.finest(),
+        grid.t.intervals(),
+        grid.phi.intervals(),
+        grid.first_width(),
         100.0 * share
     ))
 }

@@ -3,39 +3,44 @@
 use super::{Given, Grid, Matrix};
 use crate::bsdf::{Cosine, Direction, Subject};
 
-/// f·cos θi dωi/dωp of a subject, channels averaged, at the knots of a grid and in
-/// the middle of its cells, one row a direction wo.
+/// f·cos θi dωi/dωp of a subject, channels averaged, at the sites of a grid and at
+/// its knots, one row a direction wo.
 pub struct Table {
-    /// At the knots: `row[theta * φ cells + phi]`.
+    /// At the sites: `row[t * φ sites + φ]`.
+    pub sites: Matrix,
+    /// At the knots, the last in φ left out, in the same order.
     pub knots: Matrix,
-    /// In the middle of the cells, in the same order.
-    pub middles: Matrix,
 }
 
 impl Table {
     /// Asks a subject. `Err` with the place where a value is not finite.
     pub fn of(subject: &dyn Subject, grid: &Grid, given: &Given) -> Result<Self, String> {
-        let middle = |knots: &[f64]| knots.windows(2).map(|k| 0.5 * (k[0] + k[1])).collect::<Vec<_>>();
-        let (t, phi) = (middle(&grid.t), middle(&grid.phi));
+        let phi = &grid.phi.at()[..grid.phi.intervals()];
         Ok(Self {
-            knots: tabulated(subject, grid, given, &grid.t, &grid.phi[..phi.len()])?,
-            middles: tabulated(subject, grid, given, &t, &phi)?,
+            sites: tabulated(subject, grid, given, &grid.t.sites(), &grid.phi.sites())?,
+            knots: tabulated(subject, grid, given, grid.t.at(), phi)?,
         })
     }
 
-    /// What share of the light at row `row` linear interpolation between the knots
-    /// puts elsewhere than it is, as far as the middles of cells tell: 0 to 1.
+    /// What share of the light at row `row` the spline through the sites puts
+    /// elsewhere than it is, as far as the knots tell: 0 to 1.
     pub fn misplaced(&self, grid: &Grid, row: usize) -> f64 {
-        let (knots, middles) = (self.knots.row(row), self.middles.row(row));
-        let cells = grid.phi.len() - 1;
+        let sites = self.sites.row(row);
+        let columns = grid.phi.intervals();
+        // Along φ at each site in t, then along t at each knot in φ.
+        let along_phi: Vec<Vec<f64>> = sites.chunks(columns).map(|v| grid.phi.values(v)).collect();
+        let area = |i: usize| {
+            let t = grid.t.at();
+            t[(i + 1).min(t.len() - 1)] - t[i.saturating_sub(1)]
+        };
         let (mut apart, mut sum) = (0.0, 0.0);
-        for (k, value) in middles.iter().enumerate() {
-            let (i, j) = (k / cells, k % cells);
-            let corner = |i: usize, j: usize| knots[i * cells + j % cells];
-            let linear = 0.25 * (corner(i, j) + corner(i + 1, j) + corner(i, j + 1) + corner(i + 1, j + 1));
-            let area = grid.t[i + 1] - grid.t[i];
-            apart += (value - linear).abs() * area;
-            sum += (value + linear) * area;
+        for k in 0..columns {
+            let column: Vec<f64> = along_phi.iter().map(|v| v[k]).collect();
+            for (i, spline) in grid.t.values(&column).into_iter().enumerate() {
+                let value = self.knots.row(row)[i * columns + k];
+                apart += (value - spline).abs() * area(i);
+                sum += (value + spline) * area(i);
+            }
         }
         if sum > 0.0 { apart / sum } else { 0.0 }
     }
