@@ -69,9 +69,8 @@ impl Curves {
     }
 }
 
-/// Updates of each factorisation: none of the built-in subjects gains a tenth of a
-/// per cent of efficiency by more.
-const UPDATES: usize = 200;
+/// Most updates of each factorisation.
+const UPDATES: usize = 100;
 
 impl FactoredDensity {
     /// Factors a table: its rows, scaled to a mass of 1, by [`Matrix::factored`] into

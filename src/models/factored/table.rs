@@ -1,45 +1,48 @@
 //! A subject's f·cos θi on a grid.
 
-use super::{Given, Grid, Matrix};
+use super::{Given, Grid, Matrix, bezier};
 use crate::bsdf::{Cosine, Direction, Subject};
 
-/// f·cos θi dωi/dωp of a subject, channels averaged, at the sites of a grid and at
-/// its knots, one row a direction wo.
+/// f·cos θi dωi/dωp of a subject, channels averaged, at the sites of a grid and
+/// between them, one row a direction wo.
 pub struct Table {
     /// At the sites: `row[t * φ sites + φ]`.
     pub sites: Matrix,
-    /// At the knots, the last in φ left out, in the same order.
-    pub knots: Matrix,
+    /// A quarter into each cell in t, at the knots in φ, in the same order.
+    between: Matrix,
 }
+
+/// Where in a cell of t the splines are compared with the subject: far from its
+/// sites, the ends and the middle.
+const QUARTER: f64 = 0.25;
 
 impl Table {
     /// Asks a subject. `Err` with the place where a value is not finite.
     pub fn of(subject: &dyn Subject, grid: &Grid, given: &Given) -> Result<Self, String> {
         let phi = &grid.phi.at()[..grid.phi.intervals()];
+        let quarters: Vec<f64> = grid.t.at().windows(2).map(|t| t[0] + QUARTER * (t[1] - t[0])).collect();
         Ok(Self {
             sites: tabulated(subject, grid, given, &grid.t.sites(), &grid.phi.sites())?,
-            knots: tabulated(subject, grid, given, grid.t.at(), phi)?,
+            between: tabulated(subject, grid, given, &quarters, phi)?,
         })
     }
 
-    /// What share of the light at row `row` the spline through the sites puts
-    /// elsewhere than it is, as far as the knots tell: 0 to 1.
+    /// What share of the light at row `row` the splines through the sites put
+    /// elsewhere than it is, as far as the places between tell: 0 to 1.
     pub fn misplaced(&self, grid: &Grid, row: usize) -> f64 {
         let sites = self.sites.row(row);
         let columns = grid.phi.intervals();
         // Along φ at each site in t, then along t at each knot in φ.
         let along_phi: Vec<Vec<f64>> = sites.chunks(columns).map(|v| grid.phi.values(v)).collect();
-        let area = |i: usize| {
-            let t = grid.t.at();
-            t[(i + 1).min(t.len() - 1)] - t[i.saturating_sub(1)]
-        };
         let (mut apart, mut sum) = (0.0, 0.0);
         for k in 0..columns {
             let column: Vec<f64> = along_phi.iter().map(|v| v[k]).collect();
-            for (i, spline) in grid.t.values(&column).into_iter().enumerate() {
-                let value = self.knots.row(row)[i * columns + k];
-                apart += (value - spline).abs() * area(i);
-                sum += (value + spline) * area(i);
+            let (values, middles) = (grid.t.values(&column), grid.t.middles(&column));
+            for (i, t) in grid.t.at().windows(2).enumerate() {
+                let spline = bezier([values[i], middles[i], values[i + 1]], QUARTER);
+                let value = self.between.row(row)[i * columns + k];
+                apart += (value - spline).abs() * (t[1] - t[0]);
+                sum += (value + spline) * (t[1] - t[0]);
             }
         }
         if sum > 0.0 { apart / sum } else { 0.0 }
