@@ -90,7 +90,7 @@ impl Comparison {
             x_name: "θ of wo in degrees".into(),
             y_name: "log₁₀ χ² of f·cos from the density".into(),
             x: (0.0, 90.0),
-            y: (-5.0, 3.0),
+            y: (-5.0, 4.0),
             lines: SAMPLINGS.iter().enumerate().map(line).collect(),
         }
     }

@@ -85,7 +85,7 @@ pub(in crate::models) fn model() -> Model {
     .number("theta_o", default.theta_o as f64, 4.0..=32.0, "polar angles of wo")
     .number("outer", by.outer as f64, 1.0..=8.0, "terms F(wo) G(wp)")
     .number("inner", by.inner as f64, 1.0..=5.0, "terms u(θ) v(φ) of each G")
-    .number("floor", by.floor, 1e-3..=0.5, "share of draws that follow the cosine")
+    .number("floor", by.floor, 0.01..=0.5, "share of draws that follow the cosine")
 }
 
 impl Factored {

@@ -4,7 +4,7 @@ use super::{Given, Grid, Matrix, bezier};
 use crate::bsdf::{Cosine, Direction, Subject};
 
 /// f·cos θi dωi/dωp of a subject, channels averaged, at the sites of a grid and
-/// between them, one row a direction wo.
+/// between them, one row a direction wo. What is negative counts as 0.
 pub struct Table {
     /// At the sites: `row[t * φ sites + φ]`.
     pub sites: Matrix,
@@ -71,7 +71,7 @@ fn tabulated(
         subject.eval(wo, &wi, transport, &mut value).map_err(|e| e.to_string())?;
         for ((k, (wi, jacobian)), value) in reached.into_iter().zip(value.chunks_exact(channels)) {
             let mean = value.iter().map(|v| v.max(0.0)).sum::<f64>() / channels as f64;
-            if !mean.is_finite() {
+            if value.iter().any(|v| !v.is_finite()) {
                 let degrees = |w: Direction| (w.theta().to_degrees(), w.phi().to_degrees());
                 let ((a, b), (c, d)) = (degrees(wo), degrees(wi));
                 return Err(format!(
