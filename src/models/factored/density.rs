@@ -76,7 +76,7 @@ impl FactoredDensity {
     /// Factors a table: its rows, scaled to a mass of 1, by [`Matrix::factored`] into
     /// F_j G_j, and each G_j, a matrix of θp and φp, again. Last, each u v gets the
     /// probability of its own that goes best with each wo.
-    pub fn new(table: &Table, grid: Grid, given: Given, isotropic: bool, by: Factorisation) -> Self {
+    pub(super) fn new(table: &Table, grid: Grid, given: Given, isotropic: bool, by: Factorisation) -> Self {
         let cells = grid.phi.intervals();
         let (t_weights, phi_weights) = (grid.t.weights(), grid.phi.weights());
         let mut mass = table.sites.clone();

@@ -230,3 +230,57 @@ impl Subject for Factored {
         self.subject.hints(wo)
     }
 }
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use crate::registry::Registry;
+
+    fn factored(text: &str) -> Factored {
+        let subject = Registry::builtin().resolve(&text.parse().unwrap()).unwrap().subject;
+        let factorisation = Factorisation { outer: 2, inner: 2, floor: 0.02 };
+        Factored::new(subject, Options { theta: 24, phi: 8, theta_o: 4, factorisation, ..Options::default() })
+            .unwrap()
+    }
+
+    #[test]
+    fn equal_values_are_factored_once_whatever_their_name() {
+        let first = factored("torrance-sparrow");
+        let same = factored("torrance-sparrow:sampling=normals");
+        let other = factored("torrance-sparrow:alpha=0.21");
+        assert!(Arc::ptr_eq(&first.density, &same.density));
+        assert!(!Arc::ptr_eq(&first.density, &other.density));
+    }
+
+    #[test]
+    fn probabilities_add_up_to_one_at_every_wo_and_a_black_subject_is_left_to_the_cosine() {
+        let density = |text: &str, wo| factored(text).density.probabilities(wo).iter().sum::<f64>();
+        for wo in [0.0, 0.1, 0.7, 1.5, 1.57].map(|theta| Direction::from_angles(theta, 2.0)) {
+            assert!((density("torrance-sparrow", wo) - 1.0).abs() < 1e-12);
+        }
+        let wo = Direction::from_angles(0.7, 2.0);
+        assert_eq!(density("lambert:reflectance=0", wo), 0.0);
+        let pdf = factored("lambert:reflectance=0").density.given(wo).pdf(Direction::NORMAL);
+        assert!((pdf - std::f64::consts::FRAC_1_PI).abs() < 1e-15);
+    }
+
+    #[test]
+    fn nothing_breaks_at_the_ends() {
+        let all = factored("torrance-sparrow");
+        let last = 1.0 - f64::EPSILON / 2.0;
+        let grazing = Direction::new(1.0, 0.0, 1e-12);
+        for wo in [Direction::NORMAL, Direction::new(-0.0, -0.0, 1.0), grazing] {
+            let density = all.density.given(wo);
+            for u in [0.0, 0.5, last].iter().flat_map(|a| [0.0, last].map(|b| [*a, b, b])) {
+                let wi = density.sample(u);
+                assert!(
+                    wi.is_none_or(|wi| density.pdf(wi) > 0.0 && density.pdf(wi).is_finite()),
+                    "{wo:?} {u:?}"
+                );
+            }
+            assert!(density.pdf(grazing.mirrored()).is_finite());
+        }
+        let below = all.density.given(Direction::new(0.6, 0.0, -0.8));
+        assert_eq!((below.sample([0.5; 3]), below.pdf(Direction::NORMAL)), (None, 0.0));
+    }
+}
