@@ -21,34 +21,44 @@ pub struct FiguresArgs {
     pub out: PathBuf,
 }
 
+/// Name and line of each figure and table.
+fn rows() -> Vec<(&'static str, &'static str)> {
+    let figures = lecture::all().into_iter().map(|f| (f.name, f.doc));
+    figures.chain(lecture::tables().into_iter().map(|t| (t.name, t.doc))).collect()
+}
+
 fn after_help() -> String {
-    let rows = lecture::all().map(|f| format!("  {:30}{}", f.name, f.doc));
-    format!("Figures:\n{}", rows.join("\n"))
+    let rows: Vec<_> = rows().iter().map(|(name, doc)| format!("  {name:30}{doc}")).collect();
+    format!("Figures and tables:\n{}", rows.join("\n"))
 }
 
 fn name(text: &str) -> Result<String, String> {
-    let all = lecture::all();
-    if all.iter().any(|f| f.name == text) {
+    let names: Vec<_> = rows().iter().map(|(name, _)| *name).collect();
+    if names.contains(&text) {
         return Ok(text.into());
     }
-    let names = all.iter().map(|f| f.name);
-    Err(match nearest(text, names.clone()) {
+    Err(match nearest(text, names.iter().copied()) {
         Some(n) => format!("no figure is called so; did you mean `{n}`?"),
-        None => format!("no figure is called so; there are {}", names.collect::<Vec<_>>().join(", ")),
+        None => format!("no figure is called so; there are {}", names.join(", ")),
     })
 }
 
-/// Draws the lecture's figures.
+/// Draws the lecture's figures and writes its tables.
 pub fn figures(args: &FiguresArgs, voice: Voice) -> Result<Exit, CliError> {
-    for figure in lecture::all() {
-        if !args.names.is_empty() && !args.names.iter().any(|n| n == figure.name) {
-            continue;
-        }
-        let path = args.out.join(format!("{}.svg", figure.name));
-        write_whole(&path, (figure.plot)().svg().as_bytes())?;
+    let wanted = |name: &str| args.names.is_empty() || args.names.iter().any(|n| n == name);
+    let write = |file: String, text: String, doc: &str| -> Result<(), CliError> {
+        let path = args.out.join(file);
+        write_whole(&path, text.as_bytes())?;
         if !voice.quiet {
-            tell(&format!("{}  {}", path.display(), figure.doc));
+            tell(&format!("{}  {doc}", path.display()));
         }
+        Ok(())
+    };
+    for figure in lecture::all().iter().filter(|f| wanted(f.name)) {
+        write(format!("{}.svg", figure.name), (figure.plot)().svg(), figure.doc)?;
+    }
+    for table in lecture::tables().iter().filter(|t| wanted(t.name)) {
+        write(format!("{}.txt", table.name), (table.text)(), table.doc)?;
     }
     Ok(Exit::Passed)
 }

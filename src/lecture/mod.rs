@@ -3,7 +3,9 @@
 
 mod copper;
 mod distributions;
+mod factored;
 mod off_specular;
+mod proposals;
 mod schlick;
 mod shadowing;
 
@@ -20,7 +22,7 @@ pub struct LectureFigure {
 }
 
 /// Every figure, in the order of the lecture.
-pub fn all() -> [LectureFigure; 7] {
+pub fn all() -> [LectureFigure; 10] {
     [
         LectureFigure {
             name: "copper-angle",
@@ -53,7 +55,41 @@ pub fn all() -> [LectureFigure; 7] {
             doc: "the off-specular peak of Torrance and Sparrow, for a metal",
             plot: off_specular::aluminium,
         },
+        LectureFigure {
+            name: "factored-cook-torrance",
+            doc: "factored sampling beside uniform, cosine and best-fit-lobe sampling, glossy",
+            plot: factored::cook_torrance,
+        },
+        LectureFigure {
+            name: "factored-oren-nayar",
+            doc: "the same for diffuse reflection",
+            plot: factored::oren_nayar,
+        },
+        LectureFigure {
+            name: "factored-anisotropic",
+            doc: "the same for anisotropic glossy reflection",
+            plot: factored::anisotropic,
+        },
     ]
+}
+
+/// A table that can be written.
+pub struct LectureTable {
+    /// Its name: that of its file.
+    pub name: &'static str,
+    /// What it shows.
+    pub doc: &'static str,
+    /// Makes it.
+    pub text: fn() -> String,
+}
+
+/// Every table.
+pub fn tables() -> [LectureTable; 1] {
+    [LectureTable {
+        name: "factored-efficiency",
+        doc: "χ², variance and largest weight of factored, uniform, cosine and best-fit-lobe sampling",
+        text: factored::table,
+    }]
 }
 
 /// `n` + 1 even steps from `from` to `to`.

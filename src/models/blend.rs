@@ -52,7 +52,8 @@ fn described([a, b]: &[Part; 2]) -> Result<Description, String> {
         (1, _) => y.channels.clone(),
         (n, m) => return Err(format!("the first has {n} channels, the second {m}: choose equally many")),
     };
-    if is_discrete(a) && is_discrete(b) {
+    let discrete = |p: &Part| p.share > 0.0 && is_discrete(&*p.subject, &p.description);
+    if discrete(a) && discrete(b) {
         return Err(
             "both have discrete lobes, whose probabilities cannot be told apart where their directions \
                     meet: choose one without"
@@ -110,17 +111,17 @@ fn described([a, b]: &[Part; 2]) -> Result<Description, String> {
 }
 
 /// Whether a few draws find a discrete lobe.
-fn is_discrete(part: &Part) -> bool {
-    if !part.description.has.sample || part.share == 0.0 {
+pub(super) fn is_discrete(subject: &dyn Subject, description: &Description) -> bool {
+    if !description.has.sample {
         return false;
     }
-    let dimensions = part.description.dimensions.max(1);
+    let dimensions = description.dimensions.max(1);
     let u: Vec<f64> = (0..16 * dimensions).map(|k| (k as f64 * 0.618_033_988_749_895).fract()).collect();
     [0.3, 1.2, 2.0].iter().any(|theta| {
         let mut samples = Samples::default();
-        samples.clear(part.description.channels.len());
+        samples.clear(description.channels.len());
         let wo = Direction::from_angles(*theta, 0.3);
-        part.subject.sample(wo, &u, Transport::Radiance, &mut samples).is_ok()
+        subject.sample(wo, &u, Transport::Radiance, &mut samples).is_ok()
             && samples.lobe.iter().any(|l| l.is_discrete())
     })
 }

@@ -12,6 +12,7 @@ mod conductor;
 mod cosine_lobe;
 mod dielectric;
 mod disney;
+pub mod factored;
 pub mod fresnel;
 mod gauss_legendre;
 mod interface;
@@ -63,6 +64,7 @@ pub fn all() -> Vec<Model> {
         plastic::model(),
         microfacet::rough_plastic::model(),
         blend::model(),
+        factored::model(),
         crate::measured::model(),
         microfacet::masked::model(),
         interface::model(),
