@@ -249,11 +249,12 @@ impl Subject for Broken {
             if let Some(wi) = wi {
                 self.factored.eval(wo, &[wi], transport, &mut value)?;
             }
-            out.push(wi.map(|wi| {
+            let sample = wi.map(|wi| {
                 let pdf = self.density(wo, wi);
                 let weight = Spectrum::from(if pdf > 0.0 { value[0] * wi.z / pdf } else { 0.0 });
                 gonio::bsdf::Sample { wi, weight, pdf, lobe: Lobe::GLOSSY_REFLECTION }
-            }));
+            });
+            out.push(sample.as_ref());
         }
         Ok(())
     }
