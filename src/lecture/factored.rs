@@ -2,8 +2,9 @@
 //! sampling: the comparison of Lawrence, Rusinkiewicz and Ramamoorthi 2004.
 
 use super::proposals::{Proposal, Proposed};
-use crate::bsdf::{Direction, Subject};
+use crate::bsdf::{Direction, Subject, Transport};
 use crate::engine::{Options as RunOptions, run_here};
+use crate::measured::{MerlTable, Reading, read};
 use crate::models::factored::{Factored, Options, Parameterisation};
 use crate::registry::Registry;
 use crate::report::{Line, LinePlot};
@@ -20,20 +21,60 @@ const THETA: [f64; 7] = [0.0, 15.0, 30.0, 45.0, 60.0, 75.0, 85.0];
 /// A generic azimuth.
 const PHI: f64 = 17.0;
 
-/// Subjects of the comparison: title, spelling, and what the factors are functions of.
-const MATERIALS: [(&str, &str, Parameterisation); 3] = [
-    (
-        "Cook–Torrance",
-        "torrance-sparrow:distribution=beckmann,alpha=0.1,masking=v-cavity",
-        Parameterisation::HalfAngle,
-    ),
-    ("Oren–Nayar", "oren-nayar", Parameterisation::Incident),
-    (
-        "anisotropic Beckmann",
-        "torrance-sparrow:distribution=beckmann,alpha=0.3,alpha_y=0.1",
-        Parameterisation::HalfAngle,
-    ),
+/// A subject of the comparison.
+#[derive(Clone, Copy)]
+struct Material {
+    title: &'static str,
+    spelling: &'static str,
+    /// What the factors are functions of.
+    over: Parameterisation,
+    /// Whether it is read from a table as MERL's, or as it is.
+    tabulated: bool,
+}
+
+const MATERIALS: [Material; 4] = [
+    Material {
+        title: "Cook–Torrance",
+        spelling: "torrance-sparrow:distribution=beckmann,alpha=0.1,masking=v-cavity",
+        over: Parameterisation::HalfAngle,
+        tabulated: true,
+    },
+    Material {
+        title: "Oren–Nayar",
+        spelling: "oren-nayar",
+        over: Parameterisation::Incident,
+        tabulated: true,
+    },
+    Material {
+        title: "Ward",
+        spelling: "ward:kd=0,alpha=0.15",
+        over: Parameterisation::HalfAngle,
+        tabulated: true,
+    },
+    // MERL's tables are isotropic.
+    Material {
+        title: "anisotropic Beckmann",
+        spelling: "torrance-sparrow:distribution=beckmann,alpha=0.3,alpha_y=0.1",
+        over: Parameterisation::HalfAngle,
+        tabulated: false,
+    },
 ];
+
+impl Material {
+    fn subject(&self) -> Arc<dyn Subject> {
+        let parsed = self.spelling.parse().expect("a spelling");
+        let subject = Registry::builtin().resolve(&parsed).expect("a built-in subject").subject;
+        if !self.tabulated {
+            return subject;
+        }
+        let bytes = MerlTable::bake(|wo, wi| {
+            let mut value = [0.0];
+            subject.eval(wo, &[wi], Transport::Radiance, &mut value).expect("a built-in subject answers");
+            [value[0]; 3]
+        });
+        read(&bytes, &Reading::default()).expect("the table that was just written")
+    }
+}
 
 /// What a sampling does at one wo.
 #[derive(Clone, Copy, Debug, PartialEq)]
@@ -51,21 +92,23 @@ struct Quality {
 struct Comparison {
     title: &'static str,
     spelling: &'static str,
+    tabulated: bool,
     lobe: Proposal,
     /// By sampling, then by polar angle.
     quality: Vec<Vec<Quality>>,
 }
 
-static COMPARISONS: [LazyLock<Comparison>; 3] = [
+static COMPARISONS: [LazyLock<Comparison>; 4] = [
     LazyLock::new(|| Comparison::of(MATERIALS[0])),
     LazyLock::new(|| Comparison::of(MATERIALS[1])),
     LazyLock::new(|| Comparison::of(MATERIALS[2])),
+    LazyLock::new(|| Comparison::of(MATERIALS[3])),
 ];
 
 impl Comparison {
-    fn of((title, spelling, over): (&'static str, &'static str, Parameterisation)) -> Self {
-        let parsed = spelling.parse().expect("a spelling");
-        let subject = Registry::builtin().resolve(&parsed).expect("a built-in subject").subject;
+    fn of(material: Material) -> Self {
+        let Material { title, spelling, over, tabulated } = material;
+        let subject = material.subject();
         let factored = Factored::new(subject.clone(), Options { over, ..Options::default() });
         let factored = factored.unwrap_or_else(|e| panic!("{spelling}: {e}"));
         let given = THETA.map(|theta| Direction::from_angles(theta.to_radians(), PHI.to_radians()));
@@ -75,7 +118,7 @@ impl Comparison {
             subjects.push(Arc::new(Proposed { subject: subject.clone(), proposal }));
         }
         subjects.push(Arc::new(factored));
-        Self { title, spelling, lobe, quality: subjects.iter().map(measured).collect() }
+        Self { title, spelling, tabulated, lobe, quality: subjects.iter().map(measured).collect() }
     }
 
     fn plot(&self) -> LinePlot {
@@ -96,7 +139,8 @@ impl Comparison {
     }
 
     fn table(&self) -> String {
-        let mut text = format!("{} ({})\n", self.title, self.spelling);
+        let from = if self.tabulated { ", from a table of 90 × 90 × 180" } else { "" };
+        let mut text = format!("{} ({}{from})\n", self.title, self.spelling);
         if let Proposal::Lobe { exponent, share } = self.lobe {
             writeln!(text, "best-fit lobe: exponent {exponent:.1}, share {share:.2}, the rest cosine")
                 .expect("a string takes text");
@@ -161,8 +205,12 @@ pub(super) fn oren_nayar() -> LinePlot {
     COMPARISONS[1].plot()
 }
 
-pub(super) fn anisotropic() -> LinePlot {
+pub(super) fn ward() -> LinePlot {
     COMPARISONS[2].plot()
+}
+
+pub(super) fn anisotropic() -> LinePlot {
+    COMPARISONS[3].plot()
 }
 
 /// The same as a table, with variances and largest weights.
@@ -184,7 +232,9 @@ mod tests {
 
     #[test]
     fn glossy_reflection_gains_orders_over_the_cosine_and_more_than_the_paper_over_a_lobe() {
-        for (comparison, cosine) in [(&COMPARISONS[0], 300.0), (&COMPARISONS[2], 50.0)] {
+        for (comparison, cosine) in
+            [(&COMPARISONS[0], 300.0), (&COMPARISONS[2], 100.0), (&COMPARISONS[3], 50.0)]
+        {
             assert!(gain(comparison, 1).1 > cosine, "{}", comparison.table());
             // Figures 1 and 10 of the paper: six and four times as many draws, over
             // an image.
@@ -195,6 +245,6 @@ mod tests {
     #[test]
     fn diffuse_reflection_gains_too_and_the_table_tells_all() {
         assert!(gain(&COMPARISONS[1], 1).0 > 10.0, "{}", COMPARISONS[1].table());
-        assert_eq!(table().lines().filter(|l| l.contains('°')).count(), 3 * 4 * THETA.len());
+        assert_eq!(table().lines().filter(|l| l.contains('°')).count(), 4 * 4 * THETA.len());
     }
 }

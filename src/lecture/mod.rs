@@ -22,7 +22,7 @@ pub struct LectureFigure {
 }
 
 /// Every figure, in the order of the lecture.
-pub fn all() -> [LectureFigure; 10] {
+pub fn all() -> [LectureFigure; 11] {
     [
         LectureFigure {
             name: "copper-angle",
@@ -65,6 +65,7 @@ pub fn all() -> [LectureFigure; 10] {
             doc: "the same for diffuse reflection",
             plot: factored::oren_nayar,
         },
+        LectureFigure { name: "factored-ward", doc: "the same for Ward's lobe", plot: factored::ward },
         LectureFigure {
             name: "factored-anisotropic",
             doc: "the same for anisotropic glossy reflection",
