@@ -267,12 +267,14 @@ fn first_patches(
     for (p, leaf) in pilot.iter().zip(leaves) {
         of_leaf[leaf as usize].pilot.push(*p);
     }
-    for marker in markers {
-        let mut leaves = marker.corners().map(|at| partition.locate(at));
+    let corners: Vec<Point> = markers.iter().flat_map(Marker::corners).collect();
+    let mut leaves = Vec::new();
+    partition.locate_all(&corners, &mut leaves);
+    for (marker, leaves) in markers.iter().zip(leaves.as_chunks_mut::<4>().0) {
         leaves.sort_unstable();
-        for (k, leaf) in leaves.into_iter().enumerate() {
-            if k == 0 || leaf != leaves[k - 1] {
-                of_leaf[leaf].markers.push(*marker);
+        for (k, leaf) in leaves.iter().enumerate() {
+            if k == 0 || *leaf != leaves[k - 1] {
+                of_leaf[*leaf as usize].markers.push(*marker);
             }
         }
     }
@@ -311,9 +313,14 @@ fn unfilled_axis(patch: &Patch) -> Option<u8> {
     if points < TELLING {
         return None;
     }
-    let span = |axis: usize, share: usize| {
+    let sorted = [0, 1].map(|axis| {
         let mut at: Vec<f64> = patch.pilot.iter().map(|p| p[axis]).collect();
-        at.sort_by(f64::total_cmp);
+        at.sort_unstable_by(f64::total_cmp);
+        at
+    });
+    // The shortest that holds `share` points, as a part of the patch.
+    let span = |axis: usize, share: usize| {
+        let at = &sorted[axis];
         let spans = at.iter().zip(&at[share - 1..]).map(|(a, b)| b - a);
         spans.fold(f64::INFINITY, f64::min) / patch.cell.width(axis)
     };
@@ -335,10 +342,15 @@ fn halve(patch: Patch) -> [Patch; 2] {
 /// Both parts of a patch, cut at `at` across `axis`.
 pub(super) fn cut(patch: Patch, axis: usize, at: f64) -> [Patch; 2] {
     let (left_pilot, right_pilot) = patch.pilot.into_iter().partition(|p| p[axis] < at);
-    let mut left_markers = patch.markers.clone();
-    left_markers.retain(|m| m.at[axis] - m.reach < at);
-    let mut right_markers = patch.markers;
-    right_markers.retain(|m| m.at[axis] + m.reach >= at);
+    let (mut left_markers, mut right_markers) = (Vec::new(), Vec::new());
+    for m in patch.markers {
+        if m.at[axis] - m.reach < at {
+            left_markers.push(m);
+        }
+        if m.at[axis] + m.reach >= at {
+            right_markers.push(m);
+        }
+    }
     let [left, right] = patch.cell.split(axis, at);
     let half = |cell, pilot, markers| Patch {
         leaf: patch.leaf,

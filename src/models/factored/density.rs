@@ -26,7 +26,7 @@ pub struct Term {
 }
 
 /// p(ωp | ωo) = Σ_l F_l(ωo) u_l(θp) v_l(φp), each u and v a density and each F a
-/// probability (Lawrence et al. 2004, eq. 5 to 8), and a share of cosine.
+/// probability (Lawrence et al. 2004), and a share of cosine.
 #[derive(Clone, Debug, PartialEq)]
 pub struct FactoredDensity {
     pub(super) grid: Grid,

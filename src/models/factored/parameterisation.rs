@@ -2,7 +2,7 @@
 
 use crate::bsdf::Direction;
 
-/// Which direction ωp, given wo, stands for wi (§3.1 of the paper).
+/// Which direction ωp, given wo, stands for wi (Lawrence et al. 2004).
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub enum Parameterisation {
     /// The half vector, about which glossy lobes change little with wo.
