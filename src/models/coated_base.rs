@@ -1,5 +1,6 @@
 //! A diffuse base under a clear coat.
 
+use super::mixture;
 use std::f64::consts::PI;
 
 /// Lambert's reflector of reflectance ρ under a dielectric interface: light passes
@@ -68,12 +69,8 @@ impl Lobes {
     /// whether the first was chosen, and the number for it.
     #[inline]
     pub(super) fn choose(&self, u: f64) -> (bool, f64) {
-        const LAST: f64 = 1.0 - f64::EPSILON / 2.0;
-        if u < self.first {
-            (true, (u / self.first).min(LAST))
-        } else {
-            (false, ((u - self.first) / self.second).clamp(0.0, LAST))
-        }
+        let (lobe, rest) = mixture::choose([self.first, self.second], u);
+        (lobe == 0, rest)
     }
 }
 

@@ -2,6 +2,7 @@
 
 use super::clipped_cosine::ClippedCosine;
 use super::lambert::{sample_cosine, sample_uniform};
+use super::mixture;
 use crate::bsdf::{Bsdf, Description, Direction, Lobe, Sample, Spectrum, Transport};
 use crate::registry::Model;
 use std::f64::consts::PI;
@@ -168,14 +169,9 @@ impl Bsdf for OrenNayarEon {
             EonSampling::Uniform => sample_uniform(u),
             EonSampling::ClippedCosine => {
                 let (uniform, clipped) = self.lobes(wo);
-                // Where u[0] fell in its part is uniform again; below 1 whatever
-                // the division rounds to.
-                let stretched = |u0: f64| [u0.min(1.0 - f64::EPSILON / 2.0), u[1]];
-                if u[0] < uniform {
-                    sample_uniform(&stretched(u[0] / uniform))
-                } else {
-                    turned(clipped.sample(&stretched((u[0] - uniform) / (1.0 - uniform))), wo, -1.0)
-                }
+                let (chosen, first) = mixture::choose([uniform, 1.0 - uniform], u[0]);
+                let rest = [first, u[1]];
+                if chosen == 0 { sample_uniform(&rest) } else { turned(clipped.sample(&rest), wo, -1.0) }
             }
         };
         let pdf = Bsdf::pdf(self, wo, wi, transport);

@@ -2,7 +2,7 @@
 
 use super::{Distribution, Fresnel, GgxLoss, Masking, NormalSampling, Roughness, TorranceSparrow};
 use crate::bsdf::{Bsdf, Description, Direction, Lobe, Sample, Spectrum, Transport};
-use crate::models::Metal;
+use crate::models::{Metal, mixture};
 use crate::registry::{Model, Role};
 use std::f64::consts::PI;
 use std::sync::Arc;
@@ -138,20 +138,17 @@ impl Bsdf for GgxMultiscatter {
             return None;
         }
         let share = self.share(wo);
-        // Where u[0] fell in its part is uniform again; below 1 whatever the
-        // division rounds to.
-        let stretched = |u: f64| u.min(1.0 - f64::EPSILON / 2.0);
-        let (wi, single, density, lobe) = if u[0] < share {
+        let (chosen, first) = mixture::choose([share, 1.0 - share], u[0]);
+        let (wi, single, density, lobe) = if chosen == 0 {
             // From the normal down to the horizon.
-            let z = self.loss.sample(1.0 - stretched(u[0] / share));
+            let z = self.loss.sample(1.0 - first);
             let (sin, cos) = (2.0 * PI * u[1]).sin_cos();
             let r = ((1.0 - z) * (1.0 + z)).sqrt();
             let wi = Direction::new(r * cos, r * sin, z);
             let single = Bsdf::eval(&self.single, wo, wi, transport);
             (wi, single, Bsdf::pdf(&self.single, wo, wi, transport), Lobe::DIFFUSE_REFLECTION)
         } else {
-            let rest = [stretched((u[0] - share) / (1.0 - share)), u[1]];
-            let s = self.single.sample(wo, &rest, transport)?;
+            let s = self.single.sample(wo, &[first, u[1]], transport)?;
             (s.wi, s.weight * (s.pdf / s.wi.z), s.pdf, s.lobe)
         };
         let pdf = (1.0 - share) * density + share * self.multiple_density(wi);
