@@ -9,6 +9,8 @@
 //! the whole command line.
 
 pub mod bsdf;
+pub mod calibration;
+pub mod cause;
 pub mod checks;
 pub mod cli;
 pub mod engine;
@@ -17,6 +19,7 @@ pub mod lecture;
 mod measure;
 pub mod measured;
 pub mod models;
+pub mod mutants;
 pub mod registry;
 pub mod report;
 pub mod sphere;

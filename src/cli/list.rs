@@ -25,7 +25,6 @@ pub fn list(args: &ListArgs, registry: &Registry) -> Result<Exit, CliError> {
 fn subjects(registry: &Registry) -> String {
     let rows = registry
         .models()
-        .iter()
         .map(|m| vec![m.name().to_string(), m.kind().word().to_string(), m.doc().to_string()]);
     table(&["name", "kind", "what it is"], rows.collect())
 }

@@ -6,4 +6,4 @@ mod results;
 mod run;
 
 pub use results::{Attempt, CaseResult, Event, Finding, Results};
-pub use run::{Options, run, run_here};
+pub use run::{Options, run, run_here, shares};

@@ -139,7 +139,7 @@ pub fn run_here<'a>(plan: &Plan<'a>, options: &Options) -> Results<'a> {
 }
 
 /// Number of statistical tests of a plan, and what each may spend.
-fn shares(plan: &Plan) -> (usize, f64) {
+pub fn shares(plan: &Plan) -> (usize, f64) {
     let tests = plan.cases.iter().map(|c| statistical_tests(c)).sum();
     (tests, plan.share.unwrap_or_else(|| Budget { total: plan.false_alarm }.share(tests)))
 }

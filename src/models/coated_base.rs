@@ -15,7 +15,7 @@ use std::f64::consts::PI;
 /// back T(wo) times the share ρ (1 − r)/(1 − ρ r) of the light, which is all of it
 /// where ρ = 1.
 #[derive(Clone, Copy, Debug)]
-pub(super) struct CoatedBase {
+pub(crate) struct CoatedBase {
     /// f/(T T), in sr⁻¹.
     value: f64,
     /// What leaves of the light that passes the coat.
@@ -25,7 +25,7 @@ pub(super) struct CoatedBase {
 impl CoatedBase {
     /// With a base of `reflectance` ρ in [0, 1], `eta` ≥ 1 the index of the coat,
     /// and `mean` = T̄ in [0, 1].
-    pub(super) fn new(reflectance: f64, eta: f64, mean: f64) -> Self {
+    pub(crate) fn new(reflectance: f64, eta: f64, mean: f64) -> Self {
         let passes = mean / (eta * eta);
         // 1 − ρ r
         let absorbed = (1.0 - reflectance) + reflectance * passes;
@@ -34,20 +34,20 @@ impl CoatedBase {
 
     /// f in sr⁻¹ between directions with these transmittances of the coat.
     #[inline]
-    pub(super) fn value(&self, passing_o: f64, passing_i: f64) -> f64 {
+    pub(crate) fn value(&self, passing_o: f64, passing_i: f64) -> f64 {
         self.value * passing_o * passing_i
     }
 
     /// Albedo at a direction with this transmittance.
     #[inline]
-    pub(super) fn albedo(&self, passing_o: f64) -> f64 {
+    pub(crate) fn albedo(&self, passing_o: f64) -> f64 {
         self.share * passing_o
     }
 }
 
 /// Two lobes, of which the first is drawn with its share of the albedo.
 #[derive(Clone, Copy, Debug)]
-pub(super) struct Lobes {
+pub(crate) struct Lobes {
     /// Probability of the first.
     pub first: f64,
     /// Probability of the second, 1 − `first` without its cancellation.
@@ -57,7 +57,7 @@ pub(super) struct Lobes {
 impl Lobes {
     /// From the albedos of both; the second where both are black.
     #[inline]
-    pub(super) fn by_albedo(first: f64, second: f64) -> Self {
+    pub(crate) fn by_albedo(first: f64, second: f64) -> Self {
         let sum = first + second;
         if sum == 0.0 {
             return Self { first: 0.0, second: 1.0 };
@@ -68,7 +68,7 @@ impl Lobes {
     /// The number `u` in [0, 1) chooses a lobe and is stretched to [0, 1) again:
     /// whether the first was chosen, and the number for it.
     #[inline]
-    pub(super) fn choose(&self, u: f64) -> (bool, f64) {
+    pub(crate) fn choose(&self, u: f64) -> (bool, f64) {
         let (lobe, rest) = mixture::choose([self.first, self.second], u);
         (lobe == 0, rest)
     }

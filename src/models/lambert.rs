@@ -62,14 +62,14 @@ pub(super) fn model() -> Model {
 
 /// A direction of the upper hemisphere with density cos θ/π, by Malley's
 /// method over the polar map of the disc.
-pub(super) fn sample_cosine(u: &[f64]) -> Direction {
+pub(crate) fn sample_cosine(u: &[f64]) -> Direction {
     let r = u[0].sqrt();
     let (sin, cos) = (2.0 * PI * u[1]).sin_cos();
     Direction::new(r * cos, r * sin, (1.0 - u[0]).sqrt())
 }
 
 /// A direction of the upper hemisphere with density 1/2π.
-pub(super) fn sample_uniform(u: &[f64]) -> Direction {
+pub(crate) fn sample_uniform(u: &[f64]) -> Direction {
     // z in (0, 1], so that u = 0 does not touch the horizon.
     let z = 1.0 - u[0];
     let r = (u[0] * (1.0 + z)).sqrt();

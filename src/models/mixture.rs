@@ -10,7 +10,7 @@ const LEAST: f64 = 0.05;
 /// Shares of lobes with these `weights` ≥ 0: their parts of the sum, raised to
 /// [`LEAST`] where they are not 0. All of it goes to the first where the sum is 0.
 #[inline]
-pub(super) fn shares<const N: usize>(weights: [f64; N]) -> [f64; N] {
+pub(crate) fn shares<const N: usize>(weights: [f64; N]) -> [f64; N] {
     let sum: f64 = weights.iter().sum();
     if sum <= 0.0 {
         return std::array::from_fn(|k| f64::from(k == 0));
@@ -22,7 +22,7 @@ pub(super) fn shares<const N: usize>(weights: [f64; N]) -> [f64; N] {
 /// The lobe that `u` in [0, 1) chooses, each with its share, and `u` stretched
 /// from the lobe's part of [0, 1) to all of it.
 #[inline]
-pub(super) fn choose<const N: usize>(shares: [f64; N], u: f64) -> (usize, f64) {
+pub(crate) fn choose<const N: usize>(shares: [f64; N], u: f64) -> (usize, f64) {
     // Below 1, whatever the division rounds to.
     let stretched = |below: f64, share: f64| ((u - below) / share).min(1.0 - f64::EPSILON / 2.0);
     let (mut below, mut chosen) = (0.0, (0, 0.0));

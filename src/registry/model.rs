@@ -30,6 +30,7 @@ pub struct Model {
     kind: SubjectKind,
     doc: String,
     parameters: Vec<Parameter>,
+    hidden: bool,
     build: Arc<Build>,
 }
 
@@ -55,6 +56,7 @@ impl Model {
             kind: SubjectKind::Bsdf,
             doc: doc.into(),
             parameters: Vec::new(),
+            hidden: false,
             build: Arc::new(build),
         }
     }
@@ -72,6 +74,7 @@ impl Model {
             kind: SubjectKind::Bsdf,
             doc: doc.into(),
             parameters: Vec::new(),
+            hidden: false,
             build: Arc::new(build),
         }
     }
@@ -112,6 +115,29 @@ impl Model {
             only_if: None,
             idle: false,
         });
+        self
+    }
+
+    /// Takes over what `other` declares, with `given` as defaults: the subjects of
+    /// both are of one kind and have the same parameters.
+    ///
+    /// # Panics
+    /// If `other` does not declare one of `given`, or not with this value.
+    pub fn with_parameters_of(mut self, other: &Self, given: &[(String, Value)]) -> Self {
+        self.kind = other.kind;
+        self.parameters = other.parameters.clone();
+        for (name, value) in given {
+            let parameter = self.parameters.iter_mut().find(|p| &p.name == name);
+            let parameter = parameter.unwrap_or_else(|| panic!("`{}` declares no `{name}`", other.name));
+            parameter.check(value).unwrap_or_else(|e| panic!("{e}"));
+            parameter.set_default(value);
+        }
+        self
+    }
+
+    /// It is found by its name, but not listed.
+    pub fn hidden(mut self) -> Self {
+        self.hidden = true;
         self
     }
 
@@ -167,6 +193,11 @@ impl Model {
     /// Its name.
     pub fn name(&self) -> &str {
         &self.name
+    }
+
+    /// Whether it is left out of lists.
+    pub fn is_hidden(&self) -> bool {
+        self.hidden
     }
 
     /// What its subjects are.

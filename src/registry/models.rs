@@ -5,7 +5,7 @@ use super::model::Model;
 use super::parameter::{Kind, Parameters, Value};
 use super::spelling::{Spelling, parenthesised};
 use crate::bsdf::{Subject, SubjectKind};
-use crate::models;
+use crate::{models, mutants};
 use std::sync::Arc;
 
 /// The model that files are.
@@ -23,9 +23,10 @@ impl Registry {
         Self::default()
     }
 
-    /// The models that come with gonio.
+    /// The models that come with gonio, and its mutants, which are not listed.
     pub fn builtin() -> Self {
-        Self { models: Arc::new(models::all()) }
+        let mutants = mutants::all().into_iter().chain(mutants::controls()).map(|m| m.model());
+        Self { models: Arc::new(models::all().into_iter().chain(mutants).collect()) }
     }
 
     /// Adds a model; one of the same name is replaced.
@@ -36,9 +37,9 @@ impl Registry {
         self
     }
 
-    /// All models.
-    pub fn models(&self) -> &[Model] {
-        &self.models
+    /// All models that are listed.
+    pub fn models(&self) -> impl Iterator<Item = &Model> {
+        self.models.iter().filter(|m| !m.is_hidden())
     }
 
     /// The model `name`.
@@ -46,7 +47,7 @@ impl Registry {
         self.models.iter().find(|m| m.name() == name).ok_or_else(|| RegistryError::UnknownModel {
             name: name.into(),
             nearest: nearest(name, self.models.iter().map(Model::name)),
-            known: self.models.iter().map(|m| m.name().to_string()).collect(),
+            known: self.models().map(|m| m.name().to_string()).collect(),
         })
     }
 

@@ -118,6 +118,15 @@ impl Parameter {
         }
     }
 
+    /// Makes `value`, which it takes, its default.
+    pub(super) fn set_default(&mut self, value: &Value) {
+        match (&mut self.kind, value) {
+            (Kind::Number { default, .. }, Value::Number(v)) => *default = *v,
+            (Kind::Choice { default, .. } | Kind::Subject { default }, v) => *default = v.to_string(),
+            _ => {}
+        }
+    }
+
     /// Whether it matters for a subject with these parameters.
     pub fn applies(&self, parameters: &Parameters) -> bool {
         let chosen =

@@ -3,7 +3,7 @@
 use super::{Distribution, Fresnel, GgxLoss, Masking, NormalSampling, Roughness, TorranceSparrow};
 use crate::bsdf::{Bsdf, Description, Direction, Lobe, Sample, Spectrum, Transport};
 use crate::models::{Metal, mixture};
-use crate::registry::{Model, Role};
+use crate::registry::{Model, Parameters, Role};
 use std::f64::consts::PI;
 use std::sync::Arc;
 
@@ -34,14 +34,11 @@ const HINTS: u32 = 64;
 
 /// The registered model `ggx-multiscatter`.
 pub(in crate::models) fn model() -> Model {
-    Model::new("ggx-multiscatter", "GGX with its lost energy returned (Kulla and Conty 2017)", |p| {
-        let fresnel = match p.text("fresnel") {
-            "schlick" => Fresnel::Schlick(p.number("f0")),
-            "conductor" => Fresnel::Conductor(Metal::named(p.text("metal"))),
-            _ => Fresnel::None,
-        };
-        GgxMultiscatter::new(p.number("alpha"), fresnel)
-    })
+    Model::new(
+        "ggx-multiscatter",
+        "GGX with its lost energy returned (Kulla and Conty 2017)",
+        GgxMultiscatter::declared,
+    )
     .number("alpha", 0.5, 1e-4..=1.0, "roughness")
     .role(Role::Roughness)
     .choice("fresnel", &["none", "schlick", "conductor"], "reflectance F of a facet")
@@ -52,6 +49,16 @@ pub(in crate::models) fn model() -> Model {
 }
 
 impl GgxMultiscatter {
+    /// As the registered model reads its parameters.
+    pub(crate) fn declared(p: &Parameters) -> Result<Self, String> {
+        let fresnel = match p.text("fresnel") {
+            "schlick" => Fresnel::Schlick(p.number("f0")),
+            "conductor" => Fresnel::Conductor(Metal::named(p.text("metal"))),
+            _ => Fresnel::None,
+        };
+        GgxMultiscatter::new(p.number("alpha"), fresnel)
+    }
+
     /// With slope roughness `alpha` in [1e-4, 1], isotropic. Makes the table of
     /// losses (about a millisecond) unless another subject holds it.
     pub fn new(alpha: f64, fresnel: Fresnel) -> Result<Self, String> {

@@ -6,7 +6,7 @@ use crate::bsdf::Direction;
 /// the front side, and where both are so close to the horizon and opposite that
 /// their sum has no length in f64.
 #[inline]
-pub(in crate::models) fn of_reflection(wo: Direction, wi: Direction) -> Option<(Direction, f64)> {
+pub(crate) fn of_reflection(wo: Direction, wi: Direction) -> Option<(Direction, f64)> {
     if wo.z <= 0.0 || wi.z <= 0.0 {
         return None;
     }
@@ -17,7 +17,7 @@ pub(in crate::models) fn of_reflection(wo: Direction, wi: Direction) -> Option<(
 
 /// The facet that refracts light from one direction to another.
 #[derive(Clone, Copy, Debug)]
-pub(super) struct Refracting {
+pub(crate) struct Refracting {
     /// Its normal, on the side of wo.
     pub m: Direction,
     /// wo·m > 0.
@@ -34,7 +34,7 @@ pub(super) struct Refracting {
 /// through rough surfaces*, EGSR 2007, eq. 16). `None` where that is no facet
 /// seen from above by `wo` and from below by `wi`.
 #[inline]
-pub(super) fn of_refraction(wo: Direction, wi: Direction, eta: f64) -> Option<Refracting> {
+pub(crate) fn of_refraction(wo: Direction, wi: Direction, eta: f64) -> Option<Refracting> {
     if wo.z <= 0.0 || wi.z >= 0.0 {
         return None;
     }

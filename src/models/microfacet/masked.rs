@@ -2,7 +2,7 @@
 
 use super::{Distribution, Masking, Roughness, v_cavity};
 use crate::bsdf::{Description, Direction, NormalDistribution};
-use crate::registry::{Model, Role};
+use crate::registry::{Model, Parameters, Role};
 
 /// A distribution of normals and how its facets hide each other: the parts D and
 /// G1 of [`TorranceSparrow`](super::TorranceSparrow), by themselves.
@@ -16,7 +16,22 @@ pub struct MaskedDistribution {
 
 /// The registered model `normals`.
 pub(in crate::models) fn model() -> Model {
-    Model::distribution("normals", "distribution of facet normals with its masking", |p| {
+    Model::distribution(
+        "normals",
+        "distribution of facet normals with its masking",
+        MaskedDistribution::declared,
+    )
+    .choice("distribution", &["ggx", "beckmann", "gaussian"], "distribution D of facet normals")
+    .number("alpha", 0.2, 1e-4..=1.0, "roughness along the tangent (gaussian: an angle in radians)")
+    .role(Role::Roughness)
+    .number("alpha_y", 0.0, 0.0..=1.0, "roughness along the bitangent; 0: as alpha")
+    .role(Role::Roughness)
+    .choice("masking", &["smith", "v-cavity"], "masking G1 of facets by others")
+}
+
+impl MaskedDistribution {
+    /// As the registered model reads its parameters.
+    pub(crate) fn declared(p: &Parameters) -> Result<Self, String> {
         let alpha = Roughness::declared(p.number("alpha"), p.number("alpha_y"))?;
         Ok(MaskedDistribution {
             distribution: match p.text("distribution") {
@@ -29,13 +44,7 @@ pub(in crate::models) fn model() -> Model {
                 _ => Masking::Smith,
             },
         })
-    })
-    .choice("distribution", &["ggx", "beckmann", "gaussian"], "distribution D of facet normals")
-    .number("alpha", 0.2, 1e-4..=1.0, "roughness along the tangent (gaussian: an angle in radians)")
-    .role(Role::Roughness)
-    .number("alpha_y", 0.0, 0.0..=1.0, "roughness along the bitangent; 0: as alpha")
-    .role(Role::Roughness)
-    .choice("masking", &["smith", "v-cavity"], "masking G1 of facets by others")
+    }
 }
 
 impl NormalDistribution for MaskedDistribution {

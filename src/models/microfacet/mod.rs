@@ -11,7 +11,7 @@ mod ggx;
 mod ggx_loss;
 pub(super) mod ggx_multiscatter;
 mod gtr1;
-pub(super) mod half_vector;
+pub(crate) mod half_vector;
 pub(super) mod masked;
 pub(super) mod rough_dielectric;
 pub(super) mod rough_plastic;

@@ -3,7 +3,7 @@
 use super::{Distribution, NormalSampling, Roughness, half_vector, smith};
 use crate::bsdf::{Bsdf, Description, Direction, Lobe, Sample, Spectrum, Transport, TransportModes};
 use crate::models::fresnel;
-use crate::registry::{Model, Role};
+use crate::registry::{Model, Parameters, Role};
 
 /// Facets that reflect and refract, seen from both sides (B. Walter, S. R.
 /// Marschner, H. Li and K. E. Torrance, *Microfacet models for refraction through
@@ -16,9 +16,9 @@ use crate::registry::{Model, Role};
 /// as α → 0 and is less above. In radiance mode transmission carries (η_o/η_i)².
 #[derive(Clone, Debug)]
 pub struct RoughDielectric {
-    distribution: Distribution,
-    eta: f64,
-    sampling: NormalSampling,
+    pub(crate) distribution: Distribution,
+    pub(crate) eta: f64,
+    pub(crate) sampling: NormalSampling,
 }
 
 /// Indices closer than this leave no digits of the facet that refracts: its
@@ -27,20 +27,11 @@ const CLOSEST: f64 = 1e-2;
 
 /// The registered model `rough-dielectric`.
 pub(in crate::models) fn model() -> Model {
-    Model::new("rough-dielectric", "rough dielectric interface (Walter et al. 2007)", |p| {
-        let alpha = Roughness::declared(p.number("alpha"), p.number("alpha_y"))?;
-        RoughDielectric::new(
-            match p.text("distribution") {
-                "beckmann" => Distribution::beckmann(alpha),
-                _ => Distribution::ggx(alpha),
-            },
-            p.number("eta"),
-            match p.text("sampling") {
-                "normals" => NormalSampling::All,
-                _ => NormalSampling::Visible,
-            },
-        )
-    })
+    Model::new(
+        "rough-dielectric",
+        "rough dielectric interface (Walter et al. 2007)",
+        RoughDielectric::declared,
+    )
     .number("alpha", 0.2, 1e-4..=1.0, "roughness along the tangent")
     .role(Role::Roughness)
     .number("alpha_y", 0.0, 0.0..=1.0, "roughness along the bitangent; 0: as alpha")
@@ -94,6 +85,22 @@ impl Facet {
 }
 
 impl RoughDielectric {
+    /// As the registered model reads its parameters.
+    pub(crate) fn declared(p: &Parameters) -> Result<Self, String> {
+        let alpha = Roughness::declared(p.number("alpha"), p.number("alpha_y"))?;
+        RoughDielectric::new(
+            match p.text("distribution") {
+                "beckmann" => Distribution::beckmann(alpha),
+                _ => Distribution::ggx(alpha),
+            },
+            p.number("eta"),
+            match p.text("sampling") {
+                "normals" => NormalSampling::All,
+                _ => NormalSampling::Visible,
+            },
+        )
+    }
+
     /// With `eta` > 0, the index of the back side over the front side. `Err` with
     /// the reason where the indices are too close, and for the Gaussian, whose
     /// visible normals nobody knows how to draw.
@@ -113,12 +120,12 @@ impl RoughDielectric {
     /// of the far over the near side. The facets look the same from below, since
     /// D(−x, −y) = D(x, y).
     #[inline]
-    fn upright(&self, wo: Direction, w: Direction) -> Direction {
+    pub(crate) fn upright(&self, wo: Direction, w: Direction) -> Direction {
         if wo.z < 0.0 { w.flipped() } else { w }
     }
 
     #[inline]
-    fn relative_eta(&self, wo: Direction) -> f64 {
+    pub(crate) fn relative_eta(&self, wo: Direction) -> f64 {
         if wo.z < 0.0 { 1.0 / self.eta } else { self.eta }
     }
 

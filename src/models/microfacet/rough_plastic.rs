@@ -6,7 +6,7 @@ use crate::bsdf::{Bsdf, Description, Direction, Lobe, Sample, Spectrum, Transpor
 use crate::models::coated_base::{CoatedBase, Lobes};
 use crate::models::fresnel;
 use crate::models::lambert::sample_cosine;
-use crate::registry::Model;
+use crate::registry::{Model, Parameters};
 use std::f64::consts::PI;
 
 /// [Torrance and Sparrow's](TorranceSparrow) reflection of dielectric facets, and
@@ -21,22 +21,19 @@ use std::f64::consts::PI;
 /// ρ = 1: what a facet sends to another counts as passing the coat.
 #[derive(Clone, Debug)]
 pub struct RoughPlastic {
-    reflectance: f64,
-    coat: TorranceSparrow,
+    pub(crate) reflectance: f64,
+    pub(crate) coat: TorranceSparrow,
     passing: Transmittance,
     base: CoatedBase,
 }
 
 /// The registered model `rough-plastic`.
 pub(in crate::models) fn model() -> Model {
-    Model::new("rough-plastic", "rough dielectric coat over a diffuse base (Kelemen 2001)", |p| {
-        let alpha = Roughness::isotropic(p.number("alpha"));
-        let distribution = match p.text("distribution") {
-            "beckmann" => Distribution::beckmann(alpha),
-            _ => Distribution::ggx(alpha),
-        };
-        RoughPlastic::new(distribution, p.number("eta"), p.number("reflectance"))
-    })
+    Model::new(
+        "rough-plastic",
+        "rough dielectric coat over a diffuse base (Kelemen 2001)",
+        RoughPlastic::declared,
+    )
     .number("alpha", 0.2, 1e-3..=1.0, "roughness of the coat")
     .choice("distribution", &["ggx", "beckmann"], "distribution D of the coat's facet normals")
     .number("eta", 1.5, 1.01..=4.0, "index of refraction of the coat")
@@ -44,6 +41,16 @@ pub(in crate::models) fn model() -> Model {
 }
 
 impl RoughPlastic {
+    /// As the registered model reads its parameters.
+    pub(crate) fn declared(p: &Parameters) -> Result<Self, String> {
+        let alpha = Roughness::isotropic(p.number("alpha"));
+        let distribution = match p.text("distribution") {
+            "beckmann" => Distribution::beckmann(alpha),
+            _ => Distribution::ggx(alpha),
+        };
+        RoughPlastic::new(distribution, p.number("eta"), p.number("reflectance"))
+    }
+
     /// With an isotropic coat of index `eta` > 1 over a base of `reflectance` in
     /// [0, 1]; makes a table in about 10 ms. `Err` with the reason for an anisotropic
     /// coat, and where [`TorranceSparrow`] cannot be drawn by visible normals.
@@ -60,7 +67,7 @@ impl RoughPlastic {
 
     /// The coat's lobe and the base's, with what passes the coat at wo.
     #[inline]
-    fn lobes(&self, cos_o: f64) -> (Lobes, f64) {
+    pub(crate) fn lobes(&self, cos_o: f64) -> (Lobes, f64) {
         let passing = self.passing.at(cos_o);
         (Lobes::by_albedo(1.0 - passing, self.base.albedo(passing)), passing)
     }

@@ -3,7 +3,7 @@
 use super::{Distribution, Roughness, half_vector, v_cavity};
 use crate::bsdf::{Bsdf, Description, Direction, Lobe, Sample, Spectrum, Transport};
 use crate::models::{Metal, fresnel};
-use crate::registry::{Model, Role};
+use crate::registry::{Model, Parameters, Role};
 
 /// How much light reaches a facet and leaves it unhindered.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
@@ -43,15 +43,39 @@ pub enum NormalSampling {
 /// *Understanding the masking-shadowing function*, 2014).
 #[derive(Clone, Debug)]
 pub struct TorranceSparrow {
-    distribution: Distribution,
-    masking: Masking,
-    fresnel: Fresnel,
-    sampling: NormalSampling,
+    pub(crate) distribution: Distribution,
+    pub(crate) masking: Masking,
+    pub(crate) fresnel: Fresnel,
+    pub(crate) sampling: NormalSampling,
 }
 
 /// The registered model `torrance-sparrow`.
 pub(in crate::models) fn model() -> Model {
-    Model::new("torrance-sparrow", "reflection from microfacets (Torrance and Sparrow 1967)", |p| {
+    Model::new(
+        "torrance-sparrow",
+        "reflection from microfacets (Torrance and Sparrow 1967)",
+        TorranceSparrow::declared,
+    )
+    .number("alpha", 0.2, 1e-4..=1.0, "roughness along the tangent (gaussian: an angle in radians)")
+    .role(Role::Roughness)
+    .number("alpha_y", 0.0, 0.0..=1.0, "roughness along the bitangent; 0: as alpha")
+    .role(Role::Roughness)
+    .choice("distribution", &["ggx", "beckmann", "gaussian"], "distribution D of facet normals")
+    .choice("masking", &["smith", "v-cavity"], "masking and shadowing G2 (smith: correlated by height)")
+    .choice("fresnel", &["none", "schlick", "dielectric", "conductor"], "reflectance F of a facet")
+    .number("f0", 0.04, 0.0..=1.0, "reflectance of a facet at normal incidence")
+    .only_when("fresnel", &["schlick"])
+    .number("eta", 1.5, 1.0..=4.0, "index of refraction of the inside over the outside")
+    .role(Role::Eta)
+    .only_when("fresnel", &["dielectric"])
+    .choice("metal", &Metal::NAMES, "whose complex index of refraction")
+    .only_when("fresnel", &["conductor"])
+    .choice("sampling", &["visible-normals", "normals"], "which normals are drawn")
+}
+
+impl TorranceSparrow {
+    /// As the registered model reads its parameters.
+    pub(crate) fn declared(p: &Parameters) -> Result<Self, String> {
         let alpha = Roughness::declared(p.number("alpha"), p.number("alpha_y"))?;
         TorranceSparrow::new(
             match p.text("distribution") {
@@ -74,25 +98,8 @@ pub(in crate::models) fn model() -> Model {
                 _ => NormalSampling::Visible,
             },
         )
-    })
-    .number("alpha", 0.2, 1e-4..=1.0, "roughness along the tangent (gaussian: an angle in radians)")
-    .role(Role::Roughness)
-    .number("alpha_y", 0.0, 0.0..=1.0, "roughness along the bitangent; 0: as alpha")
-    .role(Role::Roughness)
-    .choice("distribution", &["ggx", "beckmann", "gaussian"], "distribution D of facet normals")
-    .choice("masking", &["smith", "v-cavity"], "masking and shadowing G2 (smith: correlated by height)")
-    .choice("fresnel", &["none", "schlick", "dielectric", "conductor"], "reflectance F of a facet")
-    .number("f0", 0.04, 0.0..=1.0, "reflectance of a facet at normal incidence")
-    .only_when("fresnel", &["schlick"])
-    .number("eta", 1.5, 1.0..=4.0, "index of refraction of the inside over the outside")
-    .role(Role::Eta)
-    .only_when("fresnel", &["dielectric"])
-    .choice("metal", &Metal::NAMES, "whose complex index of refraction")
-    .only_when("fresnel", &["conductor"])
-    .choice("sampling", &["visible-normals", "normals"], "which normals are drawn")
-}
+    }
 
-impl TorranceSparrow {
     /// From its parts. The Gaussian has no known way to draw normals visible
     /// under Smith's masking.
     pub fn new(
@@ -112,7 +119,7 @@ impl TorranceSparrow {
     }
 
     /// 1, or one a wavelength of a metal.
-    pub(super) fn channels(&self) -> usize {
+    pub(crate) fn channels(&self) -> usize {
         match self.fresnel {
             Fresnel::Conductor(_) => Metal::WAVELENGTHS.len(),
             _ => 1,
@@ -121,7 +128,7 @@ impl TorranceSparrow {
 
     /// F times `scale`, at the angle between a direction and its facet.
     #[inline]
-    pub(super) fn reflected(&self, cos: f64, scale: f64) -> Spectrum {
+    pub(crate) fn reflected(&self, cos: f64, scale: f64) -> Spectrum {
         match self.fresnel {
             Fresnel::None => Spectrum::from(scale),
             Fresnel::Schlick(f0) => Spectrum::from(scale * fresnel::schlick(cos.min(1.0), f0)),

@@ -1,0 +1,3 @@
+//! The instrument measured on itself.
+
+pub mod kill_matrix;
