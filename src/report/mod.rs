@@ -9,6 +9,8 @@ mod disc_frame;
 mod disc_leaves;
 mod figure;
 mod folder;
+mod histogram;
+mod interval_plot;
 mod json;
 mod line_plot;
 mod numbers;
@@ -26,6 +28,8 @@ pub use build::Files;
 pub use curves::{albedo as albedo_curve, p_values as p_value_histogram};
 pub use disc::{Caption, picture as disc_picture};
 pub use folder::{REPORT, draw_results, evidence_of, redraw, write_report};
+pub use histogram::Histogram;
+pub use interval_plot::{Interval, IntervalPlot, IntervalRow};
 pub use json::{
     AttemptRow, CheckResult, Diagnosis, Machine, Report, SCHEMA_VERSION, SubjectId, Summary, WoAngles,
 };
