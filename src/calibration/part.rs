@@ -5,16 +5,25 @@
 pub enum PartId {
     /// How often correct subjects are called wrong.
     FalseAlarms,
+    /// Which check catches which planted bug.
+    KillMatrix,
+    /// The smallest error that is found.
+    Power,
+    /// What happens at the limits that passes print.
+    Limits,
 }
 
 impl PartId {
     /// Every part, in the order of the report.
-    pub const ALL: [Self; 1] = [Self::FalseAlarms];
+    pub const ALL: [Self; 4] = [Self::FalseAlarms, Self::KillMatrix, Self::Power, Self::Limits];
 
     /// As it is asked for.
     pub fn name(self) -> &'static str {
         match self {
             Self::FalseAlarms => "false-alarms",
+            Self::KillMatrix => "kill-matrix",
+            Self::Power => "power",
+            Self::Limits => "limits",
         }
     }
 
@@ -29,6 +38,9 @@ impl PartId {
             Self::FalseAlarms => {
                 "how often correct subjects are called wrong, and whether p-values are uniform"
             }
+            Self::KillMatrix => "which check catches which planted bug, and whether correct code passes",
+            Self::Power => "the smallest error of each kind that is found in 95 % of runs",
+            Self::Limits => "how often errors of the size that a pass says it would have seen are seen",
         }
     }
 }

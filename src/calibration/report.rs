@@ -1,7 +1,10 @@
 //! The result of a calibration: calibration.json, and the views made of it.
 
 use super::false_alarms::{FalseAlarms, Scope};
+use super::kill_matrix::KillMatrix;
+use super::limits::Limits;
 use super::part::{Part, PartId};
+use super::power::Power;
 use super::progress::Unfinished;
 use super::work::{Effort, Work};
 use crate::report::{FileError, Machine, write_whole};
@@ -41,6 +44,15 @@ pub struct Calibration {
     /// How often correct subjects are called wrong; absent where not asked for.
     #[serde(default, skip_serializing_if = "Option::is_none")]
     pub false_alarms: Option<FalseAlarms>,
+    /// Which check catches which planted bug.
+    #[serde(default, skip_serializing_if = "Option::is_none")]
+    pub kill_matrix: Option<KillMatrix>,
+    /// The smallest errors that are found.
+    #[serde(default, skip_serializing_if = "Option::is_none")]
+    pub power: Option<Power>,
+    /// What happens at detection limits.
+    #[serde(default, skip_serializing_if = "Option::is_none")]
+    pub limits: Option<Limits>,
 }
 
 impl Calibration {
@@ -61,9 +73,21 @@ impl Calibration {
             machine: Machine::this(),
             errors: Vec::new(),
             false_alarms: None,
+            kill_matrix: None,
+            power: None,
+            limits: None,
         };
         if asked(PartId::FalseAlarms) {
             calibration.false_alarms = Some(FalseAlarms::measure(&Scope::of(work.effort), work)?);
+        }
+        if asked(PartId::KillMatrix) {
+            calibration.kill_matrix = Some(KillMatrix::measure(work)?);
+        }
+        if asked(PartId::Power) {
+            calibration.power = Some(Power::measure(work)?);
+        }
+        if asked(PartId::Limits) {
+            calibration.limits = Some(Limits::measure(work)?);
         }
         calibration.errors = calibration.parts().iter().flat_map(|p| p.errors()).collect();
         calibration.duration_s = start.elapsed().as_secs_f64();
@@ -72,8 +96,13 @@ impl Calibration {
 
     /// The parts that were measured, in the order of the report.
     pub fn parts(&self) -> Vec<&dyn Part> {
-        let false_alarms = self.false_alarms.as_ref().map(|p| p as &dyn Part);
-        [false_alarms].into_iter().flatten().collect()
+        let parts: [Option<&dyn Part>; 4] = [
+            self.false_alarms.as_ref().map(|p| p as _),
+            self.kill_matrix.as_ref().map(|p| p as _),
+            self.power.as_ref().map(|p| p as _),
+            self.limits.as_ref().map(|p| p as _),
+        ];
+        parts.into_iter().flatten().collect()
     }
 
     /// What to type to have it again.

@@ -101,6 +101,11 @@ impl<'w> Work<'w> {
         Ok(value)
     }
 
+    /// Runs a plan on the thread of the step that asks for it.
+    pub fn run(&self, plan: &Plan<'static>) -> Results<'static> {
+        run_here(plan, &self.options)
+    }
+
     /// Runs a case alone, as `gonio check` does: `budget` is the probability that it
     /// shows any failure though its subject is right, shared out equally over its
     /// statistical tests. Random numbers are those of the case in any plan of this
@@ -118,7 +123,7 @@ impl<'w> Work<'w> {
             share: None,
             cases: vec![case.clone()],
         };
-        let results = run_here(&plan, &self.options);
+        let results = self.run(&plan);
         (plan, results)
     }
 }

@@ -13,6 +13,7 @@ mod histogram;
 mod interval_plot;
 mod json;
 mod line_plot;
+mod matrix_plot;
 mod numbers;
 mod plots;
 mod raster;
@@ -34,6 +35,7 @@ pub use json::{
     AttemptRow, CheckResult, Diagnosis, Machine, Report, SCHEMA_VERSION, SubjectId, Summary, WoAngles,
 };
 pub use line_plot::{Line, LinePlot};
+pub use matrix_plot::{Mark, MatrixPlot, MatrixRow};
 pub use plots::{Pictured, Which, draw};
 pub use reciprocity_map::picture as reciprocity_picture;
 pub use saved::{FileError, evidence_path, read_evidence, write_evidence, write_whole};
