@@ -5,7 +5,12 @@ mod altered;
 mod altered_parts;
 mod constant_factor;
 mod controls;
+mod energy_compensation;
 mod half_vector_jacobian;
 mod mutant;
+mod normalization;
+mod numerics;
+mod parameter;
+mod table;
 
 pub use mutant::{Mutant, STRENGTH, Strength, all, controls, of_cause};

@@ -151,6 +151,11 @@ pub fn of_cause(cause: Cause) -> Vec<Mutant> {
     let mutants = match cause {
         Cause::ConstantFactor => super::constant_factor::mutants(),
         Cause::HalfVectorJacobian => super::half_vector_jacobian::mutants(),
+        Cause::EnergyCompensation => super::energy_compensation::mutants(),
+        Cause::Normalization => super::normalization::mutants(),
+        Cause::Numerics => super::numerics::mutants(),
+        Cause::Parameter => super::parameter::mutants(),
+        Cause::Table => super::table::mutants(),
         _ => Vec::new(),
     };
     mutants.into_iter().map(|m| Mutant { cause: Some(cause), ..m }).collect()
