@@ -5,7 +5,13 @@ mod altered;
 mod altered_parts;
 mod constant_factor;
 mod controls;
+mod discrete_lobe;
+mod eta_side;
+mod fresnel_argument;
 mod half_vector_jacobian;
 mod mutant;
+mod refraction_jacobian;
+mod support;
+mod transport_mode;
 
 pub use mutant::{Mutant, STRENGTH, Strength, all, controls, of_cause};

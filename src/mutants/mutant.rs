@@ -151,6 +151,12 @@ pub fn of_cause(cause: Cause) -> Vec<Mutant> {
     let mutants = match cause {
         Cause::ConstantFactor => super::constant_factor::mutants(),
         Cause::HalfVectorJacobian => super::half_vector_jacobian::mutants(),
+        Cause::RefractionJacobian => super::refraction_jacobian::mutants(),
+        Cause::EtaSide => super::eta_side::mutants(),
+        Cause::Support => super::support::mutants(),
+        Cause::FresnelArgument => super::fresnel_argument::mutants(),
+        Cause::TransportMode => super::transport_mode::mutants(),
+        Cause::DiscreteLobe => super::discrete_lobe::mutants(),
         _ => Vec::new(),
     };
     mutants.into_iter().map(|m| Mutant { cause: Some(cause), ..m }).collect()
