@@ -22,12 +22,12 @@ pub(super) fn model() -> Model {
 }
 
 impl Fresnel {
-    /// As the registered model reads its parameters.
+    /// As the registered model `fresnel` reads its parameters.
     pub(crate) fn declared(p: &Parameters) -> Result<Self, String> {
         Ok(match p.text("kind") {
-            "conductor" => Fresnel::Conductor(Metal::named(p.text("metal"))),
-            "schlick" => Fresnel::Schlick(p.number("f0")),
-            _ => Fresnel::Dielectric(p.number("eta")),
+            "conductor" => Self::Conductor(Metal::named(p.text("metal"))),
+            "schlick" => Self::Schlick(p.number("f0")),
+            _ => Self::Dielectric(p.number("eta")),
         })
     }
 }

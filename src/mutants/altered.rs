@@ -1,6 +1,7 @@
 //! A correct model with some of its functions changed.
 
 use crate::bsdf::{Bsdf, Description, Direction, Lobe, NativeCells, Sample, Spectrum, Subject, Transport};
+use crate::models::microfacet::Distribution;
 use std::sync::Arc;
 
 /// The mode in which densities are asked for: no built-in pdf depends on it.
@@ -75,7 +76,7 @@ impl<M: Bsdf + 'static> Altered<M> {
     }
 
     /// `sample` draws this direction of a continuous lobe, given the correct model,
-    /// wo and u.
+    /// wo and u. Where the lobe is discrete, it is as the correct model draws it.
     pub fn draw(
         mut self,
         draw: impl Fn(&M, Direction, &[f64]) -> Option<(Direction, Lobe)> + Send + Sync + 'static,
@@ -124,12 +125,15 @@ impl<M: Bsdf + 'static> Altered<M> {
             Some(draw) => draw(&self.correct, wo, u)?,
             None => {
                 let own = self.correct.sample(wo, u, transport)?;
-                if own.lobe.is_discrete() || (self.value.is_none() && self.density.is_none()) {
+                if self.value.is_none() && self.density.is_none() {
                     return Some(own);
                 }
                 (own.wi, own.lobe)
             }
         };
+        if lobe.is_discrete() {
+            return self.correct.sample(wo, u, transport);
+        }
         let pdf = Bsdf::pdf(self, wo, wi, transport);
         let weight = Bsdf::eval(self, wo, wi, transport) * (wi.z.abs() / pdf);
         (pdf != 0.0).then_some(Sample { wi, weight, pdf, lobe })
@@ -176,4 +180,11 @@ impl<M: Bsdf + 'static> Bsdf for Altered<M> {
 pub(super) fn half(wo: Direction, wi: Direction) -> Direction {
     let sum = wo + wi;
     if sum.length() > 0.0 { sum.normalized() } else { Direction::NORMAL }
+}
+
+/// Smith's masking and shadowing of reflection, correlated by height (Heitz 2014,
+/// eq. 99).
+pub(super) fn g2(d: &Distribution, wo: Direction, wi: Direction) -> f64 {
+    let (o, i) = (d.backfacing_area(wo), d.backfacing_area(wi));
+    wo.z * wi.z / (wo.z * wi.z + o * wi.z + i * wo.z)
 }

@@ -246,17 +246,14 @@ fn models() -> Vec<Mutant> {
             "fresnel",
             "the reflectance is taken from the other end of the refracted ray",
             |p, _| {
-                AlteredFresnel {
-                    correct: Fresnel::declared(p)?,
-                    reflectance: |f, cos| {
+                AlteredFresnel::of(Fresnel::declared(p)?)
+                    .reflectance(|f, cos| {
                         let Fresnel::Dielectric(eta) = *f else { return f.reflectance(cos) };
                         let relative = if cos < 0.0 { 1.0 / eta } else { eta };
                         let beyond = fresnel::refracted_cosine(cos.abs(), relative);
                         Spectrum::from(beyond.map_or(1.0, |cos| fresnel::dielectric(cos, 1.0 / relative)))
-                    },
-                    transmittance: None,
-                }
-                .made()
+                    })
+                    .made()
             },
         )
         .source("C26-01 pbrt-v2 e2140b4: exchanged indices are exchanged again"),

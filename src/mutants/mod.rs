@@ -5,12 +5,18 @@ mod altered;
 mod altered_parts;
 mod constant_factor;
 mod controls;
+mod discrete_lobe;
 mod energy_compensation;
+mod eta_side;
+mod fresnel_argument;
 mod half_vector_jacobian;
 mod mutant;
 mod normalization;
 mod numerics;
 mod parameter;
+mod refraction_jacobian;
+mod support;
 mod table;
+mod transport_mode;
 
 pub use mutant::{Mutant, STRENGTH, Strength, all, controls, of_cause};

@@ -156,6 +156,12 @@ pub fn of_cause(cause: Cause) -> Vec<Mutant> {
         Cause::Numerics => super::numerics::mutants(),
         Cause::Parameter => super::parameter::mutants(),
         Cause::Table => super::table::mutants(),
+        Cause::RefractionJacobian => super::refraction_jacobian::mutants(),
+        Cause::EtaSide => super::eta_side::mutants(),
+        Cause::Support => super::support::mutants(),
+        Cause::FresnelArgument => super::fresnel_argument::mutants(),
+        Cause::TransportMode => super::transport_mode::mutants(),
+        Cause::DiscreteLobe => super::discrete_lobe::mutants(),
         _ => Vec::new(),
     };
     mutants.into_iter().map(|m| Mutant { cause: Some(cause), ..m }).collect()

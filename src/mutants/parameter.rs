@@ -43,15 +43,12 @@ fn values() -> Vec<Mutant> {
             "fresnel:kind=dielectric,eta=2",
             "the index is 1.5 whatever is given",
             |p, _| {
-                AlteredFresnel {
-                    correct: Fresnel::declared(p)?,
-                    reflectance: |f, cos| match f {
+                AlteredFresnel::of(Fresnel::declared(p)?)
+                    .reflectance(|f, cos| match f {
                         Fresnel::Dielectric(_) => Fresnel::Dielectric(1.5).reflectance(cos),
                         other => other.reflectance(cos),
-                    },
-                    transmittance: None,
-                }
-                .made()
+                    })
+                    .made()
             },
         )
         .source("C24: a parameter without effect")
