@@ -22,8 +22,8 @@ use std::sync::Arc;
 /// thousand runs tell a rate of twice the nominal one for certain.
 pub const RAISED: f64 = 1e-2;
 
-/// Seeds of a full calibration: 30 × 367 cases are the first number of runs above the
-/// ten thousand after which none excludes a rate of 3·10⁻⁴.
+/// Seeds of a full calibration: 30 × 367 cases are more than the ten thousand runs of
+/// which none failing excludes a rate of 3·10⁻⁴.
 const FULL_SEEDS: u64 = 30;
 
 /// Seeds of a quick one: 25 s of two cores.
