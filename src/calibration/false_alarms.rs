@@ -29,7 +29,7 @@ const FULL_SEEDS: u64 = 30;
 /// Seeds of a quick one: 25 s of two cores.
 const QUICK_SEEDS: u64 = 16;
 
-/// Chance, as far as it is known, that [`FalseAlarms::errors`] finds the rates and
+/// Chance, as far as it is known, that the errors of this part call the rates and
 /// p-values of a right instrument wrong; divided by the number of statements.
 const LEVEL: f64 = 0.05;
 
@@ -332,7 +332,7 @@ impl FalseAlarms {
         std::iter::once(&self.in_all).chain(&self.checks)
     }
 
-    /// The level of each of the statements that [`Self::errors`] makes.
+    /// The level of each of the statements that its errors make.
     pub fn level(&self) -> f64 {
         let statements = 2 * self.rows().count() + Uniformity::STATEMENTS;
         LEVEL / statements as f64
