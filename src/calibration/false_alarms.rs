@@ -22,14 +22,14 @@ use std::sync::Arc;
 /// thousand runs tell a rate of twice the nominal one for certain.
 pub const RAISED: f64 = 1e-2;
 
-/// Seeds of a full calibration: 30 × 367 cases are the first number of runs above the
-/// ten thousand after which none excludes a rate of 3·10⁻⁴.
+/// Seeds of a full calibration: 30 × 367 cases are more than the ten thousand runs of
+/// which none failing excludes a rate of 3·10⁻⁴.
 const FULL_SEEDS: u64 = 30;
 
 /// Seeds of a quick one: 25 s of two cores.
 const QUICK_SEEDS: u64 = 16;
 
-/// Chance, as far as it is known, that [`FalseAlarms::errors`] finds the rates and
+/// Chance, as far as it is known, that the errors of this part call the rates and
 /// p-values of a right instrument wrong; divided by the number of statements.
 const LEVEL: f64 = 0.05;
 
@@ -332,7 +332,7 @@ impl FalseAlarms {
         std::iter::once(&self.in_all).chain(&self.checks)
     }
 
-    /// The level of each of the statements that [`Self::errors`] makes.
+    /// The level of each of the statements that its errors make.
     pub fn level(&self) -> f64 {
         let statements = 2 * self.rows().count() + Uniformity::STATEMENTS;
         LEVEL / statements as f64

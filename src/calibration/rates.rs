@@ -73,7 +73,7 @@ mod tests {
     use super::*;
 
     #[test]
-    fn a_rate_is_held_open_or_above() {
+    fn a_rate_is_below_open_or_above() {
         // 3/n is the familiar bound of none in n.
         let none = Rate::new(0, 10_000, 100.0);
         assert!((none.high - 3e-4).abs() < 1e-6 && none.low == 0.0);

@@ -214,6 +214,7 @@ mod tests {
             ("gonio run --theta nan", "0 to 180"),
             ("gonio run --threads 0", "1..=1024"),
             ("gonio check lambert --share 2", "between 0 and 1"),
+            ("gonio calibrate --part false-alarm", "did you mean `false-alarms`?"),
             ("gonio rum", "run"),
         ] {
             let text = usage_error(line);
