@@ -9,6 +9,7 @@
 //! the whole command line.
 
 pub mod bsdf;
+pub mod calibration;
 pub mod checks;
 pub mod cli;
 pub mod engine;
