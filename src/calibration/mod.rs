@@ -3,6 +3,7 @@
 
 mod false_alarms;
 mod false_alarms_page;
+mod fixed_grid;
 mod kill_matrix;
 mod kill_matrix_page;
 mod limits;
@@ -13,11 +14,13 @@ mod power_page;
 mod progress;
 mod rates;
 mod report;
+mod simpson;
 mod trial;
 mod uniformity;
 mod work;
 
 pub use false_alarms::{Alarm, CheckAlarms, FalseAlarms, Scope};
+pub use fixed_grid::{FixedGrid, GridOutcome, NORI, PBRT, RECIPES, Spacing, sidak};
 pub use kill_matrix::{Answer, Expected, KillMatrix, Row, quick_rows};
 pub use limits::{Limit, Limits};
 pub use part::{Part, PartId, Picture};
