@@ -1,5 +1,7 @@
 //! Mutant by check: what caught what.
 
+use super::baselines::{is_tested, of_case};
+use super::fixed_grid::RECIPES;
 use super::progress::Unfinished;
 use super::work::{Effort, Work};
 use crate::cause::Cause;
@@ -86,6 +88,8 @@ pub struct Row {
     pub samples: u64,
     /// How each check answered that ran at all.
     pub checks: BTreeMap<String, Answer>,
+    /// By recipe of a fixed grid: directions at which it rejects, of how many.
+    pub grids: BTreeMap<String, (usize, usize)>,
 }
 
 impl Row {
@@ -181,9 +185,18 @@ impl KillMatrix {
             let cases: Vec<usize> = (0..plan.cases.len()).collect();
             let one = |k: &usize| {
                 let alone = Plan { cases: vec![plan.cases[*k].clone()], ..plan.clone() };
-                work.run(&alone).cases.remove(0)
+                let result = work.run(&alone).cases.remove(0);
+                let grids = match is_tested(*k, cases.len()) {
+                    true => of_case(&result, work.effort, work.seed),
+                    false => [None; 2],
+                };
+                (result, grids)
             };
-            work.unit(&format!("mutants/{}", mutant.name), &cases, one, |cases| judged(mutant, &cases))
+            let sum_up = |all: Vec<(CaseResult<'static>, [Option<bool>; 2])>| {
+                let (cases, grids): (Vec<_>, Vec<_>) = all.into_iter().unzip();
+                Row { grids: rejections(&grids), ..judged(mutant, &cases) }
+            };
+            work.unit(&format!("mutants/{}", mutant.name), &cases, one, sum_up)
         };
         let rows = planned.iter().map(row).collect::<Result<_, _>>()?;
         Ok(Self { suite: settings(work.effort).into(), rows })
@@ -227,7 +240,20 @@ fn judged(mutant: &Mutant, cases: &[CaseResult]) -> Row {
         cases: cases.len(),
         samples: cases.iter().map(draws).sum(),
         checks,
+        grids: BTreeMap::new(),
     }
+}
+
+/// By recipe, in how many cases it rejects, of those that it was given.
+fn rejections(grids: &[[Option<bool>; 2]]) -> BTreeMap<String, (usize, usize)> {
+    let mut by = BTreeMap::new();
+    for (k, grid) in RECIPES.iter().enumerate() {
+        let said: Vec<bool> = grids.iter().filter_map(|g| g[k]).collect();
+        if !said.is_empty() {
+            by.insert(grid.name.into(), (said.iter().filter(|r| **r).count(), said.len()));
+        }
+    }
+    by
 }
 
 fn answer(check: &'static str, expected: Expected, cases: &[CaseResult]) -> Answer {

@@ -1,5 +1,6 @@
 //! The kill matrix in words and in a picture.
 
+use super::fixed_grid::{NORI, PBRT};
 use super::kill_matrix::{Answer, Expected, KillMatrix, Row};
 use super::part::{Part, PartId, Picture};
 use crate::checks;
@@ -15,6 +16,17 @@ fn mark(answer: Option<&Answer>) -> (&'static str, Mark) {
         Expected::MayFail if answer.failed > 0 => ("○", Mark::Open),
         Expected::MustWarn => ("!", Mark::Told),
         _ => ("·", Mark::Quiet),
+    }
+}
+
+/// The recipes, by their names.
+const GRIDS: [&str; 2] = [NORI.name, PBRT.name];
+
+fn grid_mark(rejected: Option<&(usize, usize)>) -> (&'static str, Mark) {
+    match rejected {
+        None => ("", Mark::Blank),
+        Some((0, _)) => ("·", Mark::Quiet),
+        Some(_) => ("○", Mark::Open),
     }
 }
 
@@ -35,7 +47,7 @@ impl KillMatrix {
         let must = answers(Expected::MustFail).count();
         let silent = answers(Expected::MustNotFail).filter(|a| !a.is_wrong()).count();
         format!(
-            "{killed} of {mutants} mutants with {} causes are caught, {caught} of {must} times by a check that must; of {} checks that must not fail {silent} do not; {quiet} of {controls} negative controls pass",
+            "{killed} of {mutants} mutants of {} causes are caught, {caught} of {must} times by a check that must; of {} checks that must not fail {silent} do not; {quiet} of {controls} negative controls pass",
             causes.len(),
             answers(Expected::MustNotFail).count()
         )
@@ -58,11 +70,13 @@ impl Part for KillMatrix {
             "## Kill matrix\n".to_string(),
             format!("By the settings and thresholds of the suite `{}`: {}.\n", self.suite, self.told()),
             "● fails, as it must; ○ fails, as it may; ! warns, as it must; · does not fail; ✗ contradicts the label; empty: does not apply. What must fail follows from the identity that each check tests. Each mutant is a subject of its own: `gonio check NAME`.\n".into(),
-            format!("| cause | mutant | the bug | ε | directions | {} |", columns.join(" | ")),
-            format!("|:--|:--|:--|--:|--:|{}", ":-:|".repeat(columns.len())),
+            "The last columns are the fixed grids of Nori and pbrt-v4 on the same mutants, at up to five directions, Šidák-corrected to 0.01 for the five: ○ rejected, · not.\n".into(),
+            format!("| cause | mutant | the bug | ε | directions | {} | {} |", columns.join(" | "), GRIDS.join(" | ")),
+            format!("|:--|:--|:--|--:|--:|{}", ":-:|".repeat(columns.len() + GRIDS.len())),
         ];
         for row in &self.rows {
-            let cells: Vec<_> = columns.iter().map(|id| mark(row.checks.get(*id)).0).collect();
+            let checks = columns.iter().map(|id| mark(row.checks.get(*id)).0);
+            let cells: Vec<_> = checks.chain(GRIDS.map(|g| grid_mark(row.grids.get(g)).0)).collect();
             lines.push(format!(
                 "| {} | {} | {} ({}) | {} | {} | {} |",
                 row.cause.map_or("none", |c| c.slug()),
@@ -82,12 +96,20 @@ impl Part for KillMatrix {
         let row = |row: &Row| MatrixRow {
             group: row.cause.map_or("nothing is wrong", |c| c.slug()).into(),
             name: row.mutant.trim_start_matches("mutant-").trim_start_matches("control-").into(),
-            marks: columns.iter().map(|id| mark(row.checks.get(*id)).1).collect(),
+            marks: columns
+                .iter()
+                .map(|id| mark(row.checks.get(*id)).1)
+                .chain(GRIDS.map(|g| grid_mark(row.grids.get(g)).1))
+                .collect(),
         };
         let plot = MatrixPlot {
             title: "Kill matrix".into(),
             note: "Which check catches which planted bug.".into(),
-            columns: columns.iter().map(|c| (*c).into()).collect(),
+            columns: columns
+                .iter()
+                .map(|c| (*c).into())
+                .chain(GRIDS.map(|g| format!("grid of {g}")))
+                .collect(),
             rows: self.rows.iter().map(row).collect(),
         };
         vec![Picture {
@@ -102,6 +124,14 @@ impl Part for KillMatrix {
     }
 
     fn summary(&self) -> Vec<String> {
-        vec![format!("kill matrix: {}", self.told())]
+        let grid = |name: &&str| {
+            let met = self.mutants().filter_map(|r| r.grids.get(*name));
+            let (caught, of) =
+                met.fold((0, 0), |(n, m), (rejected, _)| (n + usize::from(*rejected > 0), m + 1));
+            format!(
+                "  the fixed grid of {name} rejects {caught} of the {of} mutants that have a pdf and a sampler"
+            )
+        };
+        std::iter::once(format!("kill matrix: {}", self.told())).chain(GRIDS.iter().map(grid)).collect()
     }
 }

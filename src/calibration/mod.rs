@@ -1,6 +1,7 @@
 //! The instrument measured on itself: how often it calls right what is right, and
 //! wrong what is wrong.
 
+mod baselines;
 mod false_alarms;
 mod false_alarms_page;
 mod fixed_grid;
@@ -19,6 +20,7 @@ mod trial;
 mod uniformity;
 mod work;
 
+pub use baselines::{Baselines, GridAlarms};
 pub use false_alarms::{Alarm, CheckAlarms, FalseAlarms, Scope};
 pub use fixed_grid::{FixedGrid, GridOutcome, NORI, PBRT, RECIPES, Spacing, sidak};
 pub use kill_matrix::{Answer, Expected, KillMatrix, Row, quick_rows};

@@ -11,11 +11,14 @@ pub enum PartId {
     Power,
     /// What happens at the limits that passes print.
     Limits,
+    /// How often the fixed grids of renderers reject what is right.
+    Baselines,
 }
 
 impl PartId {
     /// Every part, in the order of the report.
-    pub const ALL: [Self; 4] = [Self::FalseAlarms, Self::KillMatrix, Self::Power, Self::Limits];
+    pub const ALL: [Self; 5] =
+        [Self::FalseAlarms, Self::KillMatrix, Self::Power, Self::Limits, Self::Baselines];
 
     /// As it is asked for.
     pub fn name(self) -> &'static str {
@@ -24,6 +27,7 @@ impl PartId {
             Self::KillMatrix => "kill-matrix",
             Self::Power => "power",
             Self::Limits => "limits",
+            Self::Baselines => "fixed-grids",
         }
     }
 
@@ -40,6 +44,7 @@ impl PartId {
             }
             Self::KillMatrix => "which check catches which planted bug, and whether correct code passes",
             Self::Power => "the smallest error of each kind that is found in 95 % of runs",
+            Self::Baselines => "how often the fixed-grid tests of renderers reject what is right",
             Self::Limits => "how often errors of the size that a pass says it would have seen are seen",
         }
     }

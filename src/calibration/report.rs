@@ -1,5 +1,6 @@
 //! The result of a calibration: calibration.json, and the views made of it.
 
+use super::baselines::Baselines;
 use super::false_alarms::{FalseAlarms, Scope};
 use super::kill_matrix::KillMatrix;
 use super::limits::Limits;
@@ -53,6 +54,9 @@ pub struct Calibration {
     /// What happens at detection limits.
     #[serde(default, skip_serializing_if = "Option::is_none")]
     pub limits: Option<Limits>,
+    /// Fixed grids on correct subjects.
+    #[serde(default, skip_serializing_if = "Option::is_none")]
+    pub fixed_grids: Option<Baselines>,
 }
 
 impl Calibration {
@@ -76,6 +80,7 @@ impl Calibration {
             kill_matrix: None,
             power: None,
             limits: None,
+            fixed_grids: None,
         };
         if asked(PartId::FalseAlarms) {
             calibration.false_alarms = Some(FalseAlarms::measure(&Scope::of(work.effort), work)?);
@@ -89,6 +94,9 @@ impl Calibration {
         if asked(PartId::Limits) {
             calibration.limits = Some(Limits::measure(work)?);
         }
+        if asked(PartId::Baselines) {
+            calibration.fixed_grids = Some(Baselines::measure(work)?);
+        }
         calibration.errors = calibration.parts().iter().flat_map(|p| p.errors()).collect();
         calibration.duration_s = start.elapsed().as_secs_f64();
         Ok(calibration)
@@ -96,11 +104,12 @@ impl Calibration {
 
     /// The parts that were measured, in the order of the report.
     pub fn parts(&self) -> Vec<&dyn Part> {
-        let parts: [Option<&dyn Part>; 4] = [
+        let parts: [Option<&dyn Part>; 5] = [
             self.false_alarms.as_ref().map(|p| p as _),
             self.kill_matrix.as_ref().map(|p| p as _),
             self.power.as_ref().map(|p| p as _),
             self.limits.as_ref().map(|p| p as _),
+            self.fixed_grids.as_ref().map(|p| p as _),
         ];
         parts.into_iter().flatten().collect()
     }

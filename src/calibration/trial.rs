@@ -1,16 +1,18 @@
 //! A graded mutant at one strength, one direction and one number of draws, measured
 //! with many seeds.
 
+use super::fixed_grid::FixedGrid;
 use super::progress::Unfinished;
 use super::work::Work;
 use crate::checks::{self, Verdict, strict_ln_p};
 use crate::engine::{CaseResult, shares};
 use crate::mutants::{Mutant, STRENGTH};
 use crate::registry::Registry;
+use crate::statistics::streams::StreamKey;
 use crate::suite::{Overrides, Plan, load};
 use serde::Serialize;
 use serde::de::DeserializeOwned;
-use std::sync::Arc;
+use std::sync::{Arc, OnceLock};
 
 /// Where graded bugs are measured: away from the normal, where all terms show, and
 /// at a generic azimuth. Degrees.
@@ -71,6 +73,32 @@ impl Trial<'_> {
         let seeds: Vec<u64> = (0..runs).map(|k| work.seed + k).collect();
         let one = |seed: &u64| of(&work.run(&Plan { seed: *seed, ..plan.clone() }).cases[0]);
         work.unit(key, &seeds, one, sum_up)
+    }
+}
+
+impl Trial<'_> {
+    /// As [`unit`](Self::unit), for the rejections of a fixed grid, each a single test.
+    pub fn grid_unit<S: Serialize + DeserializeOwned>(
+        &self,
+        (key, runs): (&str, u64),
+        registry: &Registry,
+        work: &Work,
+        grid: &FixedGrid,
+        sum_up: impl FnOnce(Vec<bool>) -> S,
+    ) -> Result<S, Unfinished> {
+        let plan = self.plan(registry);
+        let case = &plan.cases[0];
+        let stream = StreamKey::new(work.seed).with("mutant", &case.spelling);
+        // What is expected is the same for every seed.
+        let expected = OnceLock::new();
+        let one = |run: &u64| {
+            let expected = expected.get_or_init(|| grid.expect(&*case.subject, case.wo(), case.transport));
+            let Ok(expected) = expected else { return false };
+            let key = stream.with("run", &run.to_string());
+            let observed = grid.observe(&*case.subject, case.wo(), case.transport, self.samples, &key);
+            observed.is_ok_and(|observed| grid.compare(expected, &observed).rejected)
+        };
+        work.unit(key, &(0..runs).collect::<Vec<_>>(), one, sum_up)
     }
 }
 
