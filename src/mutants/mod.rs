@@ -6,6 +6,12 @@ mod altered_parts;
 mod constant_factor;
 mod controls;
 mod half_vector_jacobian;
+mod masking;
 mod mutant;
+mod ndf_measure;
+mod ndf_vndf_mismatch;
+mod swapped_arguments;
+mod unnormalized_rejection;
+mod wrong_measure;
 
 pub use mutant::{Mutant, STRENGTH, Strength, all, controls, of_cause};

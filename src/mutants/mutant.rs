@@ -151,6 +151,12 @@ pub fn of_cause(cause: Cause) -> Vec<Mutant> {
     let mutants = match cause {
         Cause::ConstantFactor => super::constant_factor::mutants(),
         Cause::HalfVectorJacobian => super::half_vector_jacobian::mutants(),
+        Cause::Masking => super::masking::mutants(),
+        Cause::NdfMeasure => super::ndf_measure::mutants(),
+        Cause::NdfVndfMismatch => super::ndf_vndf_mismatch::mutants(),
+        Cause::SwappedArguments => super::swapped_arguments::mutants(),
+        Cause::UnnormalizedRejection => super::unnormalized_rejection::mutants(),
+        Cause::WrongMeasure => super::wrong_measure::mutants(),
         _ => Vec::new(),
     };
     mutants.into_iter().map(|m| Mutant { cause: Some(cause), ..m }).collect()
