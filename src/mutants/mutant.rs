@@ -162,6 +162,12 @@ pub fn of_cause(cause: Cause) -> Vec<Mutant> {
         Cause::FresnelArgument => super::fresnel_argument::mutants(),
         Cause::TransportMode => super::transport_mode::mutants(),
         Cause::DiscreteLobe => super::discrete_lobe::mutants(),
+        Cause::Masking => super::masking::mutants(),
+        Cause::NdfMeasure => super::ndf_measure::mutants(),
+        Cause::NdfVndfMismatch => super::ndf_vndf_mismatch::mutants(),
+        Cause::SwappedArguments => super::swapped_arguments::mutants(),
+        Cause::UnnormalizedRejection => super::unnormalized_rejection::mutants(),
+        Cause::WrongMeasure => super::wrong_measure::mutants(),
         _ => Vec::new(),
     };
     mutants.into_iter().map(|m| Mutant { cause: Some(cause), ..m }).collect()
