@@ -5,6 +5,7 @@ mod check;
 mod completions;
 mod error;
 mod exit;
+mod explain;
 mod figures;
 mod list;
 mod main;
