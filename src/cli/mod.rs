@@ -6,6 +6,7 @@ mod check;
 mod completions;
 mod error;
 mod exit;
+mod explain;
 mod figures;
 mod interrupt;
 mod list;
