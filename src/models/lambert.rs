@@ -1,7 +1,7 @@
 //! Lambert's ideally diffuse reflector.
 
 use crate::bsdf::{Bsdf, Description, Direction, Lobe, Sample, Spectrum, Transport};
-use crate::registry::Model;
+use crate::registry::{Model, Parameters};
 use std::f64::consts::PI;
 
 /// A density of directions over the upper hemisphere, whatever the material.
@@ -50,14 +50,19 @@ pub struct Lambert {
 
 /// The registered model `lambert`.
 pub(super) fn model() -> Model {
-    Model::new("lambert", "ideally diffuse reflection, f = ρ/π (Lambert 1760)", |p| {
-        Ok(Lambert {
+    Model::new("lambert", "ideally diffuse reflection, f = ρ/π (Lambert 1760)", Lambert::declared)
+        .number("reflectance", 0.8, 0.0..=1.0, "share of the light that is reflected")
+        .choice("sampling", &["cosine", "uniform"], "density of sampled directions")
+}
+
+impl Lambert {
+    /// As the registered model reads its parameters.
+    pub(crate) fn declared(p: &Parameters) -> Result<Self, String> {
+        Ok(Self {
             reflectance: p.number("reflectance"),
             sampling: HemisphereSampling::named(p.text("sampling")),
         })
-    })
-    .number("reflectance", 0.8, 0.0..=1.0, "share of the light that is reflected")
-    .choice("sampling", &["cosine", "uniform"], "density of sampled directions")
+    }
 }
 
 /// A direction of the upper hemisphere with density cos θ/π, by Malley's

@@ -1,6 +1,7 @@
 //! A correct model with some of its functions changed.
 
 use crate::bsdf::{Bsdf, Description, Direction, Lobe, NativeCells, Sample, Spectrum, Subject, Transport};
+use crate::models::microfacet::Distribution;
 use std::sync::Arc;
 
 /// The mode in which densities are asked for: no built-in pdf depends on it.
@@ -9,6 +10,7 @@ pub(super) const R: Transport = Transport::Radiance;
 type Value<M> = Box<dyn Fn(&M, Direction, Direction, Transport) -> Spectrum + Send + Sync>;
 type Density<M> = Box<dyn Fn(&M, Direction, Direction) -> f64 + Send + Sync>;
 type Draw<M> = Box<dyn Fn(&M, Direction, &[f64]) -> Option<(Direction, Lobe)> + Send + Sync>;
+type Whole<M> = Box<dyn Fn(&M, Direction, &[f64], Transport) -> Option<Sample> + Send + Sync>;
 type Finish<M> = Box<dyn Fn(&M, Direction, &[f64], Sample) -> Option<Sample> + Send + Sync>;
 
 /// A correct model of which `eval`, `pdf` or `sample` is changed.
@@ -23,6 +25,7 @@ pub(super) struct Altered<M> {
     value: Option<Value<M>>,
     density: Option<Density<M>>,
     draw: Option<Draw<M>>,
+    sample: Option<Whole<M>>,
     finish: Option<Finish<M>>,
 }
 
@@ -30,7 +33,7 @@ impl<M: Bsdf + 'static> Altered<M> {
     /// Nothing is changed yet.
     pub fn of(correct: M) -> Self {
         let description = Bsdf::describe(&correct);
-        Self { correct, description, value: None, density: None, draw: None, finish: None }
+        Self { correct, description, value: None, density: None, draw: None, sample: None, finish: None }
     }
 
     /// `eval` is this, given the correct model, wo, wi and the mode.
@@ -48,6 +51,30 @@ impl<M: Bsdf + 'static> Altered<M> {
         self
     }
 
+    /// `eval` is the correct one times this, where that is not 0.
+    pub fn eval_times(
+        self,
+        factor: impl Fn(&M, Direction, Direction) -> f64 + Send + Sync + 'static,
+    ) -> Self {
+        self.eval(move |m, wo, wi, transport| {
+            let f = m.eval(wo, wi, transport);
+            if f.iter().all(|v| *v == 0.0) { f } else { f * factor(m, wo, wi) }
+        })
+    }
+
+    /// `pdf` is the correct one times this, where that is not 0.
+    pub fn pdf_times(self, factor: impl Fn(&M, Direction, Direction) -> f64 + Send + Sync + 'static) -> Self {
+        self.pdf(move |m, wo, wi| {
+            let pdf = m.pdf(wo, wi, R);
+            if pdf == 0.0 { pdf } else { pdf * factor(m, wo, wi) }
+        })
+    }
+
+    /// `pdf` is that of another model.
+    pub fn pdf_of(self, other: impl Bsdf + 'static) -> Self {
+        self.pdf(move |_, wo, wi| other.pdf(wo, wi, R))
+    }
+
     /// `sample` draws this direction of a continuous lobe, given the correct model,
     /// wo and u.
     pub fn draw(
@@ -55,6 +82,16 @@ impl<M: Bsdf + 'static> Altered<M> {
         draw: impl Fn(&M, Direction, &[f64]) -> Option<(Direction, Lobe)> + Send + Sync + 'static,
     ) -> Self {
         self.draw = Some(Box::new(draw));
+        self
+    }
+
+    /// `sample` is this, given the correct model, wo, u and the mode: nothing is
+    /// taken from the other two functions.
+    pub fn sample(
+        mut self,
+        sample: impl Fn(&M, Direction, &[f64], Transport) -> Option<Sample> + Send + Sync + 'static,
+    ) -> Self {
+        self.sample = Some(Box::new(sample));
         self
     }
 
@@ -81,6 +118,9 @@ impl<M: Bsdf + 'static> Altered<M> {
     /// The direction that is drawn, with the pdf and weight of the (changed)
     /// functions.
     fn drawn(&self, wo: Direction, u: &[f64], transport: Transport) -> Option<Sample> {
+        if let Some(sample) = &self.sample {
+            return sample(&self.correct, wo, u, transport);
+        }
         let (wi, lobe) = match &self.draw {
             Some(draw) => draw(&self.correct, wo, u)?,
             None => {
@@ -137,4 +177,11 @@ impl<M: Bsdf + 'static> Bsdf for Altered<M> {
 pub(super) fn half(wo: Direction, wi: Direction) -> Direction {
     let sum = wo + wi;
     if sum.length() > 0.0 { sum.normalized() } else { Direction::NORMAL }
+}
+
+/// Smith's masking and shadowing of reflection, correlated by height (Heitz 2014,
+/// eq. 99).
+pub(super) fn g2(d: &Distribution, wo: Direction, wi: Direction) -> f64 {
+    let (o, i) = (d.backfacing_area(wo), d.backfacing_area(wi));
+    wo.z * wi.z / (wo.z * wi.z + o * wi.z + i * wo.z)
 }
