@@ -35,8 +35,15 @@ const fn line(check: &'static str, mutant: &'static str, truth: Truth) -> Line {
 const GOODNESS_OF_FIT: &str = "goodness-of-fit";
 const REFERENCE: &str = "reference";
 
-const LINES: [Line; 2] =
-    [line("normalization", "pdf-scaled", Truth::Strength), line(GOODNESS_OF_FIT, "pdf-scaled", Truth::Cells)];
+const LINES: [Line; 7] = [
+    line(GOODNESS_OF_FIT, "pdf-scaled", Truth::Cells),
+    line(GOODNESS_OF_FIT, "pdf-alpha", Truth::Cells),
+    line(GOODNESS_OF_FIT, "mirrored-share", Truth::Cells),
+    line("normalization", "pdf-scaled", Truth::Strength),
+    line("albedo", "weight-scaled", Truth::Strength),
+    line("mis", "returned-pdf-scaled", Truth::Mean),
+    line("discrete-lobes", "discrete-probability-off", Truth::Strength),
+];
 
 /// Errors tried, in parts of the limit.
 const RATIOS: [f64; 5] = [0.25, 0.5, 0.75, 1.0, 1.25];

@@ -168,7 +168,12 @@ pub fn of_cause(cause: Cause) -> Vec<Mutant> {
         Cause::SwappedArguments => super::swapped_arguments::mutants(),
         Cause::UnnormalizedRejection => super::unnormalized_rejection::mutants(),
         Cause::WrongMeasure => super::wrong_measure::mutants(),
-        _ => Vec::new(),
+        Cause::LobeProbability => super::lobe_probability::mutants(),
+        Cause::RandomNumberReuse => super::random_number_reuse::mutants(),
+        Cause::WrongDensity => super::wrong_density::mutants(),
+        Cause::Frame => super::frame::mutants(),
+        Cause::Weight => super::weight::mutants(),
+        Cause::ImplementationDrift => super::implementation_drift::mutants(),
     };
     mutants.into_iter().map(|m| Mutant { cause: Some(cause), ..m }).collect()
 }
