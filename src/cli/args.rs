@@ -1,6 +1,6 @@
 //! What may be typed.
 
-use super::{check, completions, figures, list, report, run, schema};
+use super::{calibrate, check, completions, figures, list, report, run, schema};
 use crate::checks;
 use crate::registry::nearest;
 use crate::report::Which;
@@ -37,6 +37,8 @@ pub enum Command {
     Report(report::ReportArgs),
     /// Draw the figures of a lecture on reflection, from the built-in models.
     Figures(figures::FiguresArgs),
+    /// Measure how far gonio's own verdicts can be trusted.
+    Calibrate(calibrate::CalibrateArgs),
     /// Print the JSON Schema of report.json.
     Schema(schema::SchemaArgs),
     /// Print completions for a shell.

@@ -120,18 +120,32 @@ impl NormalDistribution for AlteredNormals {
 }
 
 type Reflectance<F> = fn(&F, f64) -> Spectrum;
+type Polarised<F> = fn(&F, f64) -> Option<[Spectrum; 2]>;
 
-/// A correct Fresnel function of which one is changed.
+/// A correct Fresnel function of which one is changed. What it transmits is as in the
+/// correct one, and polarisations are told apart only where they are what is changed.
 pub(super) struct AlteredFresnel<F> {
-    /// The correct one.
-    pub correct: F,
-    /// Reflected part, given the correct function and the signed cosine.
-    pub reflectance: Reflectance<F>,
-    /// Transmitted part, where it has a formula of its own.
-    pub transmittance: Option<Reflectance<F>>,
+    correct: F,
+    reflectance: Reflectance<F>,
+    polarised: Polarised<F>,
 }
 
 impl<F: FresnelFunction + 'static> AlteredFresnel<F> {
+    /// Nothing is changed yet.
+    pub fn of(correct: F) -> Self {
+        Self { correct, reflectance: F::reflectance, polarised: |_, _| None }
+    }
+
+    /// The reflected part is this, given the correct function and the signed cosine.
+    pub fn reflectance(self, reflectance: Reflectance<F>) -> Self {
+        Self { reflectance, ..self }
+    }
+
+    /// The reflectances of both polarisations are these.
+    pub fn polarised(self, polarised: Polarised<F>) -> Self {
+        Self { polarised, ..self }
+    }
+
     /// As a mutant builds it.
     pub fn made(self) -> Result<Arc<dyn Subject>, String> {
         Ok(Arc::new(Interface(self)))
@@ -148,6 +162,10 @@ impl<F: FresnelFunction> FresnelFunction for AlteredFresnel<F> {
     }
 
     fn transmittance(&self, cos: f64) -> Option<Spectrum> {
-        self.transmittance.map(|t| t(&self.correct, cos))
+        self.correct.transmittance(cos)
+    }
+
+    fn polarised(&self, cos: f64) -> Option<[Spectrum; 2]> {
+        (self.polarised)(&self.correct, cos)
     }
 }

@@ -20,9 +20,9 @@ use std::sync::Arc;
 #[derive(Clone, Debug)]
 pub struct GgxMultiscatter {
     pub(crate) single: TorranceSparrow,
-    loss: Arc<GgxLoss>,
+    pub(crate) loss: Arc<GgxLoss>,
     /// F_ms/(π (1 − E_avg)).
-    scale: Spectrum,
+    pub(crate) scale: Spectrum,
     /// F_ms over F_avg, both averaged over channels: by how much less a loss is
     /// made good than its light was reflected once.
     made_good: f64,
