@@ -124,9 +124,9 @@ fn settings(effort: Effort) -> &'static str {
 /// shows best, or those of the default suite at all of its directions.
 fn suite_of(mutant: &Mutant, effort: Effort) -> String {
     let text = embedded(settings(effort)).expect("the suite comes with gonio").text;
-    // They stand above its first subject.
-    let settings = text.split("[[subject]]").next().unwrap_or_default();
-    let mut suite = format!("{settings}[[subject]]\nuse = \"{}\"\n", mutant.model_name());
+    // They stand above its first subject, and comments may speak of subjects.
+    let settings = text.split("\n[[subject]]").next().unwrap_or_default();
+    let mut suite = format!("{settings}\n[[subject]]\nuse = \"{}\"\n", mutant.model_name());
     if effort == Effort::Quick {
         suite += &format!("theta = {:?}\n", mutant.shows_at);
     }

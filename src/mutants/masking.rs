@@ -12,8 +12,9 @@ pub(super) fn mutants() -> Vec<Mutant> {
     all
 }
 
-/// None of the one-sided ones gives back too much: f cos θi/(D/(4 cos θo)), which is
-/// G1(wo) times the weight of visible normals, stays below G1(wo) G2/G1(wo) ≤ 1.
+/// None of the one-sided ones gives back more than arrives: f cos θi over the density
+/// of visible normals, whose mass is at most 1, is G1(wo) in the first, 1 in the next
+/// two, and cos²θo G2/G1(wo) in the last.
 fn of_value() -> Vec<Mutant> {
     vec![
         Mutant::new(

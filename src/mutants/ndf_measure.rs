@@ -88,7 +88,7 @@ pub(super) fn mutants() -> Vec<Mutant> {
             },
         )
         .source("C03-04 student Nori microfacet, inverse")
-        .varied(&[("alpha", 0.1, 0.6)])
+        .varied(&[("alpha", 0.2, 0.6)])
         .must_fail(&[
             "distribution",
             "goodness-of-fit",

@@ -29,7 +29,9 @@ fn of_pdf() -> Vec<Mutant> {
         )
         .source("C04: wo·n for wo·h")
         .varied(&[("alpha", 0.2, 0.8)])
-        .must_fail(ALL),
+        .must_fail(ALL)
+        // At 89° pdf is up to 57 times too large, and where it is there are no samples.
+        .may_fail(&["support"]),
         Mutant::new(
             "pdf-arguments-exchanged",
             "torrance-sparrow:alpha=0.5",
@@ -88,7 +90,7 @@ fn of_pdf() -> Vec<Mutant> {
         .must_fail(ALL),
         Mutant::new(
             "refraction-wo-h-for-wi-h",
-            "rough-dielectric:alpha=0.4",
+            "rough-dielectric:alpha=0.2",
             "in pdf() the Jacobian of refraction has |wo·h| where |wi·h| must be",
             |p, _| {
                 Altered::of(RoughDielectric::declared(p)?)
