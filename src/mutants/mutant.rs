@@ -151,6 +151,12 @@ pub fn of_cause(cause: Cause) -> Vec<Mutant> {
     let mutants = match cause {
         Cause::ConstantFactor => super::constant_factor::mutants(),
         Cause::HalfVectorJacobian => super::half_vector_jacobian::mutants(),
+        Cause::LobeProbability => super::lobe_probability::mutants(),
+        Cause::RandomNumberReuse => super::random_number_reuse::mutants(),
+        Cause::WrongDensity => super::wrong_density::mutants(),
+        Cause::Frame => super::frame::mutants(),
+        Cause::Weight => super::weight::mutants(),
+        Cause::ImplementationDrift => super::implementation_drift::mutants(),
         _ => Vec::new(),
     };
     mutants.into_iter().map(|m| Mutant { cause: Some(cause), ..m }).collect()
