@@ -3,7 +3,7 @@
 use super::fresnel;
 use super::metal::Metal;
 use crate::bsdf::{Bsdf, Description, Direction, Lobe, Sample, Spectrum, Transport};
-use crate::registry::Model;
+use crate::registry::{Model, Parameters};
 
 /// What part of the light a [`Conductor`] reflects.
 #[derive(Clone, Copy, Debug, PartialEq)]
@@ -24,19 +24,12 @@ pub struct Conductor {
 
 /// The registered model `conductor`.
 pub(super) fn model() -> Model {
-    Model::new("conductor", "smooth metal mirror (Fresnel 1823; Schlick 1994)", |p| {
-        Ok(Conductor {
-            fresnel: match p.text("fresnel") {
-                "schlick" => ConductorFresnel::Schlick(p.number("f0")),
-                _ => ConductorFresnel::Exact(Metal::named(p.text("metal"))),
-            },
-        })
-    })
-    .choice("fresnel", &["exact", "schlick"], "reflectance by angle")
-    .choice("metal", &Metal::NAMES, "whose complex index of refraction")
-    .only_when("fresnel", &["exact"])
-    .number("f0", 0.9, 0.0..=1.0, "reflectance at normal incidence")
-    .only_when("fresnel", &["schlick"])
+    Model::new("conductor", "smooth metal mirror (Fresnel 1823; Schlick 1994)", Conductor::declared)
+        .choice("fresnel", &["exact", "schlick"], "reflectance by angle")
+        .choice("metal", &Metal::NAMES, "whose complex index of refraction")
+        .only_when("fresnel", &["exact"])
+        .number("f0", 0.9, 0.0..=1.0, "reflectance at normal incidence")
+        .only_when("fresnel", &["schlick"])
 }
 
 impl Bsdf for Conductor {
@@ -75,6 +68,16 @@ impl Bsdf for Conductor {
 }
 
 impl Conductor {
+    /// As the registered model reads its parameters.
+    pub(crate) fn declared(p: &Parameters) -> Result<Self, String> {
+        Ok(Self {
+            fresnel: match p.text("fresnel") {
+                "schlick" => ConductorFresnel::Schlick(p.number("f0")),
+                _ => ConductorFresnel::Exact(Metal::named(p.text("metal"))),
+            },
+        })
+    }
+
     fn black(&self) -> Spectrum {
         Spectrum::zero(match self.fresnel {
             ConductorFresnel::Exact(metal) => metal.index().len(),

@@ -2,7 +2,7 @@
 
 use super::fresnel;
 use crate::bsdf::{Bsdf, Description, Direction, Lobe, Sample, Spectrum, Transport, TransportModes};
-use crate::registry::{Model, Role};
+use crate::registry::{Model, Parameters, Role};
 
 /// A smooth interface: mirror reflection with the probability F of Fresnel's
 /// equations, else refraction by Snell's law (Born and Wolf, *Principles of
@@ -17,11 +17,22 @@ pub struct Dielectric {
 
 /// The registered model `dielectric`.
 pub(super) fn model() -> Model {
-    Model::new("dielectric", "smooth dielectric interface (Fresnel 1823, Snell)", |p| {
-        Ok(Dielectric { eta: p.number("eta") })
-    })
-    .number("eta", 1.5, 1.0..=4.0, "index of refraction of the back side over the front side")
-    .role(Role::Eta)
+    Model::new("dielectric", "smooth dielectric interface (Fresnel 1823, Snell)", Dielectric::declared)
+        .number("eta", 1.5, 1.0..=4.0, "index of refraction of the back side over the front side")
+        .role(Role::Eta)
+}
+
+impl Dielectric {
+    /// As the registered model reads its parameters.
+    pub(crate) fn declared(p: &Parameters) -> Result<Self, String> {
+        Ok(Self { eta: p.number("eta") })
+    }
+
+    /// The index of the far over the near side.
+    #[inline]
+    pub(crate) fn relative_eta(&self, wo: Direction) -> f64 {
+        if wo.z > 0.0 { self.eta } else { 1.0 / self.eta }
+    }
 }
 
 impl Bsdf for Dielectric {
@@ -47,8 +58,7 @@ impl Bsdf for Dielectric {
         if wo.z == 0.0 {
             return None;
         }
-        // η_i/η_o for wi on the other side.
-        let eta = if wo.z > 0.0 { self.eta } else { 1.0 / self.eta };
+        let eta = self.relative_eta(wo);
         let cos_o = wo.z.abs();
         let reflected = fresnel::dielectric(cos_o, eta);
         if u[0] < reflected {

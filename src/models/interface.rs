@@ -3,17 +3,15 @@
 use super::microfacet::Fresnel;
 use super::{Metal, fresnel};
 use crate::bsdf::{Description, FresnelFunction, Spectrum};
-use crate::registry::Model;
+use crate::registry::{Model, Parameters};
 
 /// The registered model `fresnel`.
 pub(super) fn model() -> Model {
-    Model::fresnel("fresnel", "reflectance of an interface by angle (Fresnel 1823; Schlick 1994)", |p| {
-        Ok(match p.text("kind") {
-            "conductor" => Fresnel::Conductor(Metal::named(p.text("metal"))),
-            "schlick" => Fresnel::Schlick(p.number("f0")),
-            _ => Fresnel::Dielectric(p.number("eta")),
-        })
-    })
+    Model::fresnel(
+        "fresnel",
+        "reflectance of an interface by angle (Fresnel 1823; Schlick 1994)",
+        Fresnel::declared,
+    )
     .choice("kind", &["dielectric", "conductor", "schlick"], "which equations")
     .number("eta", 1.5, 0.25..=4.0, "index of refraction of the inside over the outside")
     .only_when("kind", &["dielectric"])
@@ -21,6 +19,17 @@ pub(super) fn model() -> Model {
     .only_when("kind", &["conductor"])
     .number("f0", 0.04, 0.0..=1.0, "reflectance at normal incidence")
     .only_when("kind", &["schlick"])
+}
+
+impl Fresnel {
+    /// As the registered model `fresnel` reads its parameters.
+    pub(crate) fn declared(p: &Parameters) -> Result<Self, String> {
+        Ok(match p.text("kind") {
+            "conductor" => Self::Conductor(Metal::named(p.text("metal"))),
+            "schlick" => Self::Schlick(p.number("f0")),
+            _ => Self::Dielectric(p.number("eta")),
+        })
+    }
 }
 
 /// Index beyond over the index on the side that the light comes from.

@@ -34,12 +34,12 @@ pub enum EonSampling {
 #[derive(Clone, Copy, Debug)]
 pub struct OrenNayarEon {
     reflectance: f64,
-    roughness: f64,
+    pub(crate) roughness: f64,
     sampling: EonSampling,
     /// A.
     a: f64,
     /// ρ_ms/π A r/(1/2 − 2/3π − mean): so written, nothing is 0/0 at r = 0.
-    multiple: f64,
+    pub(crate) multiple: f64,
 }
 
 /// The registered model `oren-nayar-eon`.
@@ -80,7 +80,7 @@ impl OrenNayarEon {
 
     /// (1 − E(μ))/(A r).
     #[inline]
-    fn lost(&self, mu: f64) -> f64 {
+    pub(crate) fn lost(&self, mu: f64) -> f64 {
         // 0 at grazing but for rounding.
         (GRAZING - gained(mu)).max(0.0)
     }

@@ -18,8 +18,8 @@ use std::f64::consts::{PI, TAU};
 /// (n + 2)/2π ∫cosⁿ⁺¹θ = 1.
 #[derive(Clone, Copy, Debug)]
 pub struct Phong {
-    kd: f64,
-    ks: f64,
+    pub(crate) kd: f64,
+    pub(crate) ks: f64,
     pub(crate) exponent: f64,
     pub(crate) shares: [f64; 2],
 }

@@ -4,7 +4,7 @@ use super::coated_base::{CoatedBase, Lobes};
 use super::lambert::sample_cosine;
 use super::{fresnel, gauss_legendre};
 use crate::bsdf::{Bsdf, Description, Direction, Lobe, Sample, Spectrum, Transport};
-use crate::registry::Model;
+use crate::registry::{Model, Parameters};
 use std::f64::consts::PI;
 
 /// Mirror reflection F(θo) of the coat and, through it, a Lambertian base:
@@ -21,14 +21,17 @@ pub struct Plastic {
 
 /// The registered model `plastic`.
 pub(super) fn model() -> Model {
-    Model::new("plastic", "smooth dielectric coat over a diffuse base (Saunderson 1942)", |p| {
-        Ok(Plastic::new(p.number("reflectance"), p.number("eta")))
-    })
-    .number("reflectance", 0.5, 0.0..=1.0, "reflectance of the base")
-    .number("eta", 1.5, 1.0..=4.0, "index of refraction of the coat")
+    Model::new("plastic", "smooth dielectric coat over a diffuse base (Saunderson 1942)", Plastic::declared)
+        .number("reflectance", 0.5, 0.0..=1.0, "reflectance of the base")
+        .number("eta", 1.5, 1.0..=4.0, "index of refraction of the coat")
 }
 
 impl Plastic {
+    /// As the registered model reads its parameters.
+    pub(crate) fn declared(p: &Parameters) -> Result<Self, String> {
+        Ok(Self::new(p.number("reflectance"), p.number("eta")))
+    }
+
     /// With a base of `reflectance` in [0, 1] under a coat of index `eta` ≥ 1.
     pub fn new(reflectance: f64, eta: f64) -> Self {
         Self { reflectance, eta, base: CoatedBase::new(reflectance, eta, mean_transmittance(eta)) }

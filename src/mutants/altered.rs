@@ -76,7 +76,7 @@ impl<M: Bsdf + 'static> Altered<M> {
     }
 
     /// `sample` draws this direction of a continuous lobe, given the correct model,
-    /// wo and u.
+    /// wo and u. Where the lobe is discrete, it is as the correct model draws it.
     pub fn draw(
         mut self,
         draw: impl Fn(&M, Direction, &[f64]) -> Option<(Direction, Lobe)> + Send + Sync + 'static,
@@ -125,12 +125,15 @@ impl<M: Bsdf + 'static> Altered<M> {
             Some(draw) => draw(&self.correct, wo, u)?,
             None => {
                 let own = self.correct.sample(wo, u, transport)?;
-                if own.lobe.is_discrete() || (self.value.is_none() && self.density.is_none()) {
+                if self.value.is_none() && self.density.is_none() {
                     return Some(own);
                 }
                 (own.wi, own.lobe)
             }
         };
+        if lobe.is_discrete() {
+            return self.correct.sample(wo, u, transport);
+        }
         let pdf = Bsdf::pdf(self, wo, wi, transport);
         let weight = Bsdf::eval(self, wo, wi, transport) * (wi.z.abs() / pdf);
         (pdf != 0.0).then_some(Sample { wi, weight, pdf, lobe })

@@ -12,7 +12,6 @@ type Density = fn(&MaskedDistribution, Direction) -> f64;
 type Masking = fn(&MaskedDistribution, Direction, Direction) -> f64;
 type Lambda = fn(&MaskedDistribution, Direction) -> f64;
 type Draw = fn(&MaskedDistribution, &[f64]) -> Direction;
-type DrawVisible = fn(&MaskedDistribution, Direction, &[f64]) -> Option<Direction>;
 
 /// A correct distribution of which a function is changed.
 #[derive(Clone)]
@@ -23,7 +22,6 @@ pub(super) struct AlteredNormals {
     lambda: Option<Lambda>,
     pdf: Option<Density>,
     draw: Draw,
-    draw_visible: DrawVisible,
 }
 
 impl AlteredNormals {
@@ -36,7 +34,6 @@ impl AlteredNormals {
             lambda: None,
             pdf: None,
             draw: |d, u| d.sample(u),
-            draw_visible: |d, wo, u| d.sample_visible(wo, u),
         })
     }
 
@@ -63,11 +60,6 @@ impl AlteredNormals {
     /// Normals are drawn so.
     pub fn draw(self, draw: Draw) -> Self {
         Self { draw, ..self }
-    }
-
-    /// Visible normals are drawn so.
-    pub fn draw_visible(self, draw_visible: DrawVisible) -> Self {
-        Self { draw_visible, ..self }
     }
 
     /// As a mutant builds it.
@@ -108,7 +100,7 @@ impl NormalDistribution for AlteredNormals {
     }
 
     fn sample_visible(&self, wo: Direction, u: &[f64]) -> Option<Direction> {
-        (self.draw_visible)(&self.correct, wo, u)
+        self.correct.sample_visible(wo, u)
     }
 
     fn lambda(&self, w: Direction) -> Option<f64> {
@@ -120,18 +112,32 @@ impl NormalDistribution for AlteredNormals {
 }
 
 type Reflectance<F> = fn(&F, f64) -> Spectrum;
+type Polarised<F> = fn(&F, f64) -> Option<[Spectrum; 2]>;
 
-/// A correct Fresnel function of which one is changed.
+/// A correct Fresnel function of which one is changed. What it transmits is as in the
+/// correct one, and polarisations are told apart only where they are what is changed.
 pub(super) struct AlteredFresnel<F> {
-    /// The correct one.
-    pub correct: F,
-    /// Reflected part, given the correct function and the signed cosine.
-    pub reflectance: Reflectance<F>,
-    /// Transmitted part, where it has a formula of its own.
-    pub transmittance: Option<Reflectance<F>>,
+    correct: F,
+    reflectance: Reflectance<F>,
+    polarised: Polarised<F>,
 }
 
 impl<F: FresnelFunction + 'static> AlteredFresnel<F> {
+    /// Nothing is changed yet.
+    pub fn of(correct: F) -> Self {
+        Self { correct, reflectance: F::reflectance, polarised: |_, _| None }
+    }
+
+    /// The reflected part is this, given the correct function and the signed cosine.
+    pub fn reflectance(self, reflectance: Reflectance<F>) -> Self {
+        Self { reflectance, ..self }
+    }
+
+    /// The reflectances of both polarisations are these.
+    pub fn polarised(self, polarised: Polarised<F>) -> Self {
+        Self { polarised, ..self }
+    }
+
     /// As a mutant builds it.
     pub fn made(self) -> Result<Arc<dyn Subject>, String> {
         Ok(Arc::new(Interface(self)))
@@ -148,6 +154,10 @@ impl<F: FresnelFunction> FresnelFunction for AlteredFresnel<F> {
     }
 
     fn transmittance(&self, cos: f64) -> Option<Spectrum> {
-        self.transmittance.map(|t| t(&self.correct, cos))
+        self.correct.transmittance(cos)
+    }
+
+    fn polarised(&self, cos: f64) -> Option<[Spectrum; 2]> {
+        (self.polarised)(&self.correct, cos)
     }
 }
