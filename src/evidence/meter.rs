@@ -386,6 +386,8 @@ impl<'a> Meter<'a> {
             }
             if !out.lobe[k].is_valid() {
                 out.weight[k * out.channels..(k + 1) * out.channels].fill(0.0);
+                // 0 times what is no number would be none.
+                out.pdf[k] = 0.0;
             }
         }
         Ok(())
@@ -419,4 +421,45 @@ pub(crate) fn guarded<T>(
             message: message.unwrap_or_else(|| "a panic without text".into()),
         })
     })
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use crate::bsdf::{Bsdf, Sample, Spectrum};
+
+    /// Its only draw has neither a direction nor a density.
+    struct NotANumber;
+
+    impl Bsdf for NotANumber {
+        fn describe(&self) -> Description {
+            Description::new("not-a-number").dimensions(1)
+        }
+
+        fn eval(&self, _: Direction, _: Direction, _: Transport) -> Spectrum {
+            Spectrum::zero(1)
+        }
+
+        fn pdf(&self, _: Direction, _: Direction, _: Transport) -> f64 {
+            f64::NAN
+        }
+
+        fn sample(&self, _: Direction, _: &[f64], _: Transport) -> Option<Sample> {
+            let (wi, weight) = (Direction::NORMAL * f64::NAN, Spectrum::from(f64::NAN));
+            Some(Sample { wi, weight, pdf: f64::NAN, lobe: Lobe::GLOSSY_REFLECTION })
+        }
+    }
+
+    /// Sums over draws multiply its density with its weight.
+    #[test]
+    fn a_draw_that_is_no_sample_counts_as_0() {
+        let watch = Watch::new(Duration::from_secs(60), Arc::default());
+        let meter = Meter::new(&NotANumber, Subject::describe(&NotANumber), Arc::new(watch));
+        let mut samples = Samples::default();
+        meter.sample(Direction::NORMAL, &[0.5], Transport::Radiance, &mut samples).unwrap();
+        assert_eq!((samples.lobe[0], samples.weight[0], samples.pdf[0]), (Lobe::NONE, 0.0, 0.0));
+        let sanity = meter.sanity();
+        let broken: Vec<&str> = sanity.tallies.keys().map(String::as_str).collect();
+        assert_eq!(broken, ["sample().pdf is finite", "sample().weight is finite", "|wi| = 1"]);
+    }
 }

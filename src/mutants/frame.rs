@@ -65,13 +65,14 @@ pub(super) fn mutants() -> Vec<Mutant> {
                     .made()
             },
         )
-        .source("C14: a tangent in sample() and another in pdf()")
+        .source("our own: a tangent in sample() and another in pdf()")
         .strength(0.05, 1.0, "samples are turned by epsilon radians")
         .varied(&[("alpha", 0.02, 0.2)])
         // A mirror sends light where the smoothest surface does not.
         .must_fail(&["goodness-of-fit", "jacobian", "sensitivity"])
-        // Weights are nearly equal everywhere.
-        .may_fail(&["albedo", "mis"]),
+        // Weights depend on both heights only, so that albedo holds; and a lobe that is
+        // narrower than ε leaves its place.
+        .may_fail(&["mis", "support"]),
         Mutant::new(
             "lobe-not-turned-back",
             "oren-nayar-eon:reflectance=1,roughness=1",

@@ -51,7 +51,7 @@ pub(super) fn mutants() -> Vec<Mutant> {
                     .made()
             },
         )
-        .source("C16: two forms of F in one material")
+        .source("our own: two forms of F in one material")
         .shows_at(&[60.0])
         .varied(&[("alpha", 0.05, 0.3), ("eta", 1.4, 1.8)])
         .must_fail(&["weight", "albedo", "mis"]),
@@ -69,8 +69,9 @@ pub(super) fn mutants() -> Vec<Mutant> {
         .source("C23-05 Mitsuba 0.x: a least α, in one function")
         .varied(&[("alpha", 0.005, 0.02)])
         .must_fail(&["goodness-of-fit", "mis", "jacobian", "sensitivity"])
-        // Weights are nearly equal everywhere, and little is below the horizon.
-        .may_fail(&["normalization", "albedo"]),
+        // Weights are nearly equal everywhere, little is below the horizon, and at the peak
+        // samples are (0.05/α)² times rarer than pdf says.
+        .may_fail(&["normalization", "albedo", "support"]),
         Mutant::new(
             "pdf-in-f32",
             "torrance-sparrow:alpha=0.01",
@@ -83,10 +84,10 @@ pub(super) fn mutants() -> Vec<Mutant> {
             },
         )
         .source("C23-02 Cycles GGX D in f32")
-        .varied(&[("alpha", 0.005, 0.03)])
+        .varied(&[("alpha", 0.008, 0.03)])
         .must_fail(&["weight", "returned-pdf"])
-        // Off by up to 0.3 % at places, which is what they tolerate.
-        .may_fail(&["jacobian", "goodness-of-fit", "normalization"]),
+        // Off by 0.15 % at places; masses of cells by less than is tolerated.
+        .may_fail(&["jacobian"]),
         Mutant::new(
             "sample-alpha",
             "torrance-sparrow:alpha=0.3",
