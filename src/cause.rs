@@ -120,6 +120,47 @@ impl Cause {
             Self::Table => "table",
         }
     }
+
+    /// Its page of the manual, in Markdown that also reads well in a terminal.
+    pub fn page(self) -> &'static str {
+        macro_rules! page {
+            ($slug:literal) => {
+                include_str!(concat!("../docs/causes/", $slug, ".md"))
+            };
+        }
+        match self {
+            Self::ConstantFactor => page!("constant-factor"),
+            Self::HalfVectorJacobian => page!("half-vector-jacobian"),
+            Self::NdfMeasure => page!("ndf-measure"),
+            Self::SwappedArguments => page!("swapped-arguments"),
+            Self::WrongMeasure => page!("wrong-measure"),
+            Self::NdfVndfMismatch => page!("ndf-vndf-mismatch"),
+            Self::RefractionJacobian => page!("refraction-jacobian"),
+            Self::EtaSide => page!("eta-side"),
+            Self::LobeProbability => page!("lobe-probability"),
+            Self::RandomNumberReuse => page!("random-number-reuse"),
+            Self::WrongDensity => page!("wrong-density"),
+            Self::UnnormalizedRejection => page!("unnormalized-rejection"),
+            Self::Support => page!("support"),
+            Self::Frame => page!("frame"),
+            Self::Weight => page!("weight"),
+            Self::ImplementationDrift => page!("implementation-drift"),
+            Self::FresnelArgument => page!("fresnel-argument"),
+            Self::Masking => page!("masking"),
+            Self::Normalization => page!("normalization"),
+            Self::EnergyCompensation => page!("energy-compensation"),
+            Self::TransportMode => page!("transport-mode"),
+            Self::DiscreteLobe => page!("discrete-lobe"),
+            Self::Numerics => page!("numerics"),
+            Self::Parameter => page!("parameter"),
+            Self::Table => page!("table"),
+        }
+    }
+
+    /// What is wrong, in one sentence: the first of its [page](Self::page).
+    pub fn statement(self) -> &'static str {
+        self.page().lines().nth(2).unwrap_or_default()
+    }
 }
 
 impl std::fmt::Display for Cause {
@@ -139,5 +180,16 @@ mod tests {
         }
         let distinct: std::collections::BTreeSet<_> = Cause::ALL.iter().map(|c| c.slug()).collect();
         assert_eq!(distinct.len(), Cause::ALL.len());
+    }
+
+    #[test]
+    fn each_page_is_that_of_its_cause_and_begins_with_one_sentence() {
+        for cause in Cause::ALL {
+            assert!(cause.page().starts_with(&format!("# {cause}: ")), "{cause}");
+            let statement = cause.statement();
+            assert!(statement.ends_with('.') && !statement.contains(". "), "{cause}: {statement}");
+            let lines: Vec<_> = cause.page().lines().take(4).collect();
+            assert!(lines[1].is_empty() && lines[3].is_empty(), "{cause}: a paragraph of one line");
+        }
     }
 }

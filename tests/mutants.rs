@@ -1,16 +1,12 @@
 //! The quick kill matrix: each mutant is caught by every check whose identity it
 //! breaks, and by no other; negative controls pass.
 
-use gonio::calibration::kill_matrix::{Sharpness, row};
+use gonio::calibration::quick_rows;
 use gonio::cause::Cause;
-use gonio::engine::Options;
 use gonio::mutants::{Mutant, controls, of_cause};
-use gonio::registry::Registry;
 
 fn are_labelled_rightly(mutants: Vec<Mutant>) {
-    let registry = Registry::builtin();
-    let rows = mutants.iter().filter_map(|m| row(m, Sharpness::Quick, &registry, 1, &Options::default()));
-    let errors: Vec<_> = rows.flat_map(|row| row.errors()).collect();
+    let errors: Vec<_> = quick_rows(&mutants).iter().flat_map(|row| row.errors()).collect();
     assert!(errors.is_empty(), "{}", errors.join("\n"));
 }
 

@@ -1,32 +1,17 @@
 //! Mutant by check: what caught what.
 
+use super::baselines::{is_tested, of_case};
+use super::fixed_grid::RECIPES;
+use super::progress::Unfinished;
+use super::work::{Effort, Work};
 use crate::cause::Cause;
 use crate::checks::{self, Verdict};
-use crate::engine::{self, CaseResult, Options, Results};
-use crate::mutants::Mutant;
+use crate::engine::{self, CaseResult, Options};
+use crate::mutants::{Mutant, all, controls};
 use crate::registry::Registry;
 use crate::suite::{Overrides, Plan, embedded, load};
 use serde::{Deserialize, Serialize};
 use std::collections::BTreeMap;
-
-/// How sharply the matrix is made.
-#[derive(Clone, Copy, Debug, PartialEq, Eq, Serialize, Deserialize)]
-#[serde(rename_all = "kebab-case")]
-pub enum Sharpness {
-    /// By the settings of the quick suite, where each mutant shows best.
-    Quick,
-    /// By the settings of the default suite, at all of its directions.
-    Full,
-}
-
-impl Sharpness {
-    fn suite(self) -> &'static str {
-        match self {
-            Self::Quick => "quick",
-            Self::Full => "seed",
-        }
-    }
-}
 
 /// What the identity of a check lets one expect of a mutant.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, Serialize, Deserialize)]
@@ -60,6 +45,27 @@ pub struct Answer {
     pub told: Option<String>,
 }
 
+impl Answer {
+    /// What contradicts the label, in words.
+    fn wrong(&self) -> Option<String> {
+        let told = self.told.as_deref().unwrap_or_default();
+        match self.expected {
+            Expected::MustFail if self.failed == 0 => Some("misses it".into()),
+            Expected::MustWarn if self.warned == 0 => Some("does not warn".into()),
+            Expected::MustWarn | Expected::MustNotFail if self.failed > 0 => {
+                Some(format!("must not fail, and does at {} directions: {told}", self.failed))
+            }
+            Expected::MustNotFail if self.warned > 0 => Some(format!("must not warn: {told}")),
+            _ => None,
+        }
+    }
+
+    /// Whether it contradicts the label.
+    pub fn is_wrong(&self) -> bool {
+        self.wrong().is_some()
+    }
+}
+
 /// A row of the matrix.
 #[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
 pub struct Row {
@@ -82,6 +88,8 @@ pub struct Row {
     pub samples: u64,
     /// How each check answered that ran at all.
     pub checks: BTreeMap<String, Answer>,
+    /// By recipe of a fixed grid: directions at which it rejects, of how many.
+    pub grids: BTreeMap<String, (usize, usize)>,
 }
 
 impl Row {
@@ -93,20 +101,10 @@ impl Row {
     /// What contradicts the labels, in sentences: a check that must fail and did
     /// not, one that failed and must not, a mutant that nothing caught.
     pub fn errors(&self) -> Vec<String> {
-        let mut errors = Vec::new();
-        for (check, answer) in &self.checks {
-            let told = answer.told.as_deref().unwrap_or_default();
-            let wrong = match answer.expected {
-                Expected::MustFail if answer.failed == 0 => Some("misses it".into()),
-                Expected::MustWarn if answer.warned == 0 => Some("does not warn".into()),
-                Expected::MustWarn | Expected::MustNotFail if answer.failed > 0 => {
-                    Some(format!("must not fail, and does at {} directions: {told}", answer.failed))
-                }
-                Expected::MustNotFail if answer.warned > 0 => Some(format!("must not warn: {told}")),
-                _ => None,
-            };
-            errors.extend(wrong.map(|wrong: String| format!("{}: {check} {wrong}", self.mutant)));
-        }
+        let of = |(check, answer): (&String, &Answer)| {
+            answer.wrong().map(|wrong| format!("{}: {check} {wrong}", self.mutant))
+        };
+        let mut errors: Vec<_> = self.checks.iter().filter_map(of).collect();
         if self.cause.is_some() && !self.is_killed() {
             errors.push(format!("{}: nothing catches it", self.mutant));
         }
@@ -114,13 +112,22 @@ impl Row {
     }
 }
 
-/// The suite that measures a mutant: the settings of the quick or the default
-/// suite, which stand above its first subject.
-fn suite_of(mutant: &Mutant, sharpness: Sharpness) -> String {
-    let text = embedded(sharpness.suite()).expect("the suite comes with gonio").text;
+/// The suite whose settings and thresholds are taken.
+fn settings(effort: Effort) -> &'static str {
+    match effort {
+        Effort::Quick => "quick",
+        Effort::Full => "seed",
+    }
+}
+
+/// The suite that measures a mutant: the settings of the quick suite where the mutant
+/// shows best, or those of the default suite at all of its directions.
+fn suite_of(mutant: &Mutant, effort: Effort) -> String {
+    let text = embedded(settings(effort)).expect("the suite comes with gonio").text;
+    // They stand above its first subject.
     let settings = text.split("[[subject]]").next().unwrap_or_default();
     let mut suite = format!("{settings}[[subject]]\nuse = \"{}\"\n", mutant.model_name());
-    if sharpness == Sharpness::Quick {
+    if effort == Effort::Quick {
         suite += &format!("theta = {:?}\n", mutant.shows_at);
     }
     if mutant.compared {
@@ -129,32 +136,79 @@ fn suite_of(mutant: &Mutant, sharpness: Sharpness) -> String {
     suite
 }
 
-/// The cases of a mutant, each of whose tests spends as much as one of the quick
-/// or the default suite.
-///
-/// # Panics
-/// If a mutant is not labelled rightly, which a test excludes.
-pub fn plan_of(mutant: &Mutant, sharpness: Sharpness, registry: &Registry, seed: u64) -> Plan<'static> {
-    let overrides = Overrides { seed: Some(seed), ..Overrides::default() };
-    let of = |name: &str, text: &str| match load(name, text, registry, &overrides) {
-        Ok(expanded) => expanded.plan,
-        Err(e) => panic!("{}: {e:?}", mutant.name),
-    };
-    let own = embedded(sharpness.suite()).expect("the suite comes with gonio");
-    let (_, share) = engine::shares(&of(own.name, own.text));
-    Plan { share: Some(share), ..of(mutant.name, &suite_of(mutant, sharpness)) }
+/// The plans of mutants, in which each test spends as much as one of the quick or
+/// the default suite does.
+struct Plans {
+    registry: Registry,
+    effort: Effort,
+    seed: u64,
+    share: f64,
 }
 
-/// Measures a mutant; `None` where that was stopped.
-pub fn row(
-    mutant: &Mutant,
-    sharpness: Sharpness,
-    registry: &Registry,
-    seed: u64,
-    options: &Options,
-) -> Option<Row> {
-    let results = engine::run(&plan_of(mutant, sharpness, registry, seed), options, &mut |_| {});
-    results.partial.is_none().then(|| judged(mutant, &results))
+impl Plans {
+    fn new(effort: Effort, seed: u64) -> Self {
+        let own = embedded(settings(effort)).expect("the suite comes with gonio");
+        let mut plans = Self { registry: Registry::builtin(), effort, seed, share: 0.0 };
+        (_, plans.share) = engine::shares(&plans.load(own.name, own.text));
+        plans
+    }
+
+    fn load(&self, name: &str, text: &str) -> Plan<'static> {
+        let overrides = Overrides { seed: Some(self.seed), ..Overrides::default() };
+        let expanded = load(name, text, &self.registry, &overrides);
+        expanded.unwrap_or_else(|e| panic!("{name}: {e:?}")).plan
+    }
+
+    fn of(&self, mutant: &Mutant) -> Plan<'static> {
+        let plan = self.load(mutant.name, &suite_of(mutant, self.effort));
+        Plan { share: Some(self.share), ..plan }
+    }
+}
+
+/// The matrix.
+#[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
+pub struct KillMatrix {
+    /// The suite whose settings and thresholds are taken.
+    pub suite: String,
+    /// Mutants by cause, then negative controls.
+    pub rows: Vec<Row>,
+}
+
+impl KillMatrix {
+    /// Measures every mutant and control.
+    pub(super) fn measure(work: &Work) -> Result<Self, Unfinished> {
+        let plans = Plans::new(work.effort, work.seed);
+        let all: Vec<_> = all().into_iter().chain(controls()).collect();
+        let planned: Vec<_> = all.iter().map(|mutant| (mutant, plans.of(mutant))).collect();
+        work.begin("mutants", planned.iter().map(|(_, plan)| plan.cases.len()).sum());
+        let row = |(mutant, plan): &(&Mutant, Plan<'static>)| {
+            let cases: Vec<usize> = (0..plan.cases.len()).collect();
+            let one = |k: &usize| {
+                let alone = Plan { cases: vec![plan.cases[*k].clone()], ..plan.clone() };
+                let result = work.run(&alone).cases.remove(0);
+                let grids = match is_tested(*k, cases.len()) {
+                    true => of_case(&result, work.effort, work.seed),
+                    false => [None; 2],
+                };
+                (result, grids)
+            };
+            let sum_up = |all: Vec<(CaseResult<'static>, [Option<bool>; 2])>| {
+                let (cases, grids): (Vec<_>, Vec<_>) = all.into_iter().unzip();
+                Row { grids: rejections(&grids), ..judged(mutant, &cases) }
+            };
+            work.unit(&format!("mutants/{}", mutant.name), &cases, one, sum_up)
+        };
+        let rows = planned.iter().map(row).collect::<Result<_, _>>()?;
+        Ok(Self { suite: settings(work.effort).into(), rows })
+    }
+}
+
+/// The rows of these mutants, made at once: for tests.
+pub fn quick_rows(mutants: &[Mutant]) -> Vec<Row> {
+    let plans = Plans::new(Effort::Quick, crate::suite::SEED);
+    let row =
+        |mutant| judged(mutant, &engine::run(&plans.of(mutant), &Options::default(), &mut |_| {}).cases);
+    mutants.iter().map(row).collect()
 }
 
 fn expected(mutant: &Mutant, check: &str) -> Expected {
@@ -166,10 +220,10 @@ fn expected(mutant: &Mutant, check: &str) -> Expected {
     }
 }
 
-fn judged(mutant: &Mutant, results: &Results) -> Row {
+fn judged(mutant: &Mutant, cases: &[CaseResult]) -> Row {
     let mut checks = BTreeMap::new();
     for check in checks::all() {
-        let answer = answer(check.id(), expected(mutant, check.id()), &results.cases);
+        let answer = answer(check.id(), expected(mutant, check.id()), cases);
         if answer.ran > 0 || answer.expected == Expected::MustFail {
             checks.insert(check.id().to_string(), answer);
         }
@@ -183,10 +237,23 @@ fn judged(mutant: &Mutant, results: &Results) -> Row {
         of: mutant.of.into(),
         source: mutant.source.into(),
         strength: mutant.strength.map(|s| s.default),
-        cases: results.cases.len(),
-        samples: results.cases.iter().map(draws).sum(),
+        cases: cases.len(),
+        samples: cases.iter().map(draws).sum(),
         checks,
+        grids: BTreeMap::new(),
     }
+}
+
+/// By recipe, in how many cases it rejects, of those that it was given.
+fn rejections(grids: &[[Option<bool>; 2]]) -> BTreeMap<String, (usize, usize)> {
+    let mut by = BTreeMap::new();
+    for (k, grid) in RECIPES.iter().enumerate() {
+        let said: Vec<bool> = grids.iter().filter_map(|g| g[k]).collect();
+        if !said.is_empty() {
+            by.insert(grid.name.into(), (said.iter().filter(|r| **r).count(), said.len()));
+        }
+    }
+    by
 }
 
 fn answer(check: &'static str, expected: Expected, cases: &[CaseResult]) -> Answer {

@@ -74,7 +74,7 @@ fn levels(tree: &Pooled) -> Vec<(f64, f64)> {
 }
 
 /// p at ε = 0 of the tree: the smallest over the levels, times their number.
-fn strict_ln_p(levels: &[(f64, f64)]) -> f64 {
+fn least_ln_p(levels: &[(f64, f64)]) -> f64 {
     let least = levels.iter().map(|(x2, dof)| chi_square::ln_sf(*x2, *dof)).fold(0.0, f64::min);
     (least + (levels.len().max(1) as f64).ln()).min(0.0)
 }
@@ -96,6 +96,55 @@ pub fn level_p_values(evidence: &Evidence) -> Vec<f64> {
         .filter(|(_, dof)| *dof >= 1.0)
         .map(|(s, dof)| chi_square::sf(*s, *dof))
         .collect()
+}
+
+/// ln p of the first draws at ε = 0, all tests of samples against pdf together: the
+/// smallest over the levels of the tree, the mass, and draws where pdf is 0 (which
+/// no chance explains), times their number. What a test without tolerance sees.
+pub fn strict_ln_p(evidence: &Evidence) -> Option<f64> {
+    let (partition, integrals) = (evidence.partition.as_ref()?, evidence.integrals.as_ref()?);
+    let draws = evidence.draws.first()?;
+    if draws.zero_pdf.is_broken() {
+        return Some(f64::NEG_INFINITY);
+    }
+    let levels = least_ln_p(&levels(&Cells::new(partition, &integrals.pdf, draws).raw()?));
+    let ((mass, error), valid) = (integrals.mass(), draws.continuous());
+    let mass = if mass - error > 1.0 {
+        f64::NEG_INFINITY
+    } else {
+        let (n, mass) = (draws.samples, mass.min(1.0));
+        let tail = if valid as f64 > n as f64 * mass {
+            binomial::ln_upper_tail(valid, n, mass)
+        } else {
+            binomial::ln_lower_tail(valid, n, mass)
+        };
+        (tail + 2f64.ln()).min(0.0)
+    };
+    Some((levels.min(mass) + 2f64.ln()).min(0.0))
+}
+
+/// √D of the told masses against `true_masses`, those that samples really follow,
+/// on the tree cut at each depth, with the number of cells: how wrong pdf is,
+/// seen with the cells that `draws` made.
+pub fn true_effects(evidence: &Evidence, true_masses: &[f64]) -> Vec<(f64, f64)> {
+    let (Some(partition), Some(integrals), Some(draws)) =
+        (&evidence.partition, &evidence.integrals, evidence.draws.first())
+    else {
+        return Vec::new();
+    };
+    let told = Cells::new(partition, &integrals.pdf, draws);
+    let Some(tree) = told.raw() else { return Vec::new() };
+    let right = Cells::new(partition, true_masses, draws);
+    let at = |depth: u32| {
+        let cells = level_cut(&tree, depth);
+        let term = |k: &usize| {
+            let node = tree.nodes[*k].node;
+            let (p, q) = (told.mass[node], right.mass[node]);
+            if p > 0.0 { (q - p) * (q - p) / p } else { 0.0 }
+        };
+        (cells.len() as f64, cells.iter().map(term).sum::<f64>().sqrt())
+    };
+    (1..=tree.depth()).map(at).collect()
 }
 
 /// Where a node lies, for a sentence.
@@ -192,7 +241,7 @@ pub(super) fn against(
 
     let (x2, dof, _) = worst_level;
     let own_effect = effect::root_d(x2, dof.max(1.0), n);
-    let (shape_p, raw_p) = (strict_ln_p(&shape_levels), strict_ln_p(&raw_levels));
+    let (shape_p, raw_p) = (least_ln_p(&shape_levels), least_ln_p(&raw_levels));
     let largest = haar_largest(&raw.haar());
     let place = largest.map(|h| deviation(partition, &raw, &h)).unwrap_or_default();
     let outcome = Outcome {

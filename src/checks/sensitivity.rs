@@ -14,6 +14,10 @@ pub struct Sensitivity;
 /// normal incidence.
 const NARROW: f64 = 10.0;
 
+/// Roughness below which a lobe need not narrow any further: renderers hold α above
+/// 1e-3 (pbrt-v3) or 1e-4 (Mitsuba), lest D exceed the range of f32.
+const FLOOR: f64 = 1e-3;
+
 /// Flux that an interface with equal indices may reflect.
 const TRANSPARENT: f64 = 1e-9;
 
@@ -75,7 +79,7 @@ impl Check for Sensitivity {
                         }
                     ),
                     median.0,
-                    NARROW * roughness,
+                    NARROW * roughness.max(FLOOR),
                 ),
                 Some(Limit::Transparent { reflected }) => (
                     format!("`{}` = {}: {:.2e} of the light is reflected", v.parameter, v.to, reflected.0),

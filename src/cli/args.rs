@@ -1,6 +1,6 @@
 //! What may be typed.
 
-use super::{check, completions, figures, list, report, run, schema};
+use super::{calibrate, check, completions, explain, figures, list, report, run, schema};
 use crate::checks;
 use crate::registry::nearest;
 use crate::report::Which;
@@ -33,10 +33,14 @@ pub enum Command {
     Check(check::CheckArgs),
     /// Show the subjects, or the parameters of one.
     List(list::ListArgs),
+    /// Print the manual's page on a kind of bug, or list them.
+    Explain(explain::ExplainArgs),
     /// Draw the pictures of a saved report again.
     Report(report::ReportArgs),
     /// Draw the figures of a lecture on reflection, from the built-in models.
     Figures(figures::FiguresArgs),
+    /// Measure how far gonio's own verdicts can be trusted.
+    Calibrate(calibrate::CalibrateArgs),
     /// Print the JSON Schema of report.json.
     Schema(schema::SchemaArgs),
     /// Print completions for a shell.
@@ -163,14 +167,18 @@ fn distinct<T: PartialEq + Clone>(list: &[T]) -> Vec<T> {
 }
 
 fn check_id(text: &str) -> Result<String, String> {
-    let known = || checks::all().iter().map(|c| c.id());
-    if checks::find(text).is_some() {
-        return Ok(text.into());
+    match checks::find(text) {
+        Some(_) => Ok(text.into()),
+        None => Err(unknown("check", text, checks::all().iter().map(|c| c.id()))),
     }
-    Err(match nearest(text, known()) {
-        Some(n) => format!("no check is called so; did you mean `{n}`?"),
-        None => format!("no check is called so; there are {}", known().collect::<Vec<_>>().join(", ")),
-    })
+}
+
+/// What is told of a name that none of the `known` is.
+pub(super) fn unknown<'a>(what: &str, name: &str, known: impl Iterator<Item = &'a str> + Clone) -> String {
+    match nearest(name, known.clone()) {
+        Some(n) => format!("no {what} is called so; did you mean `{n}`?"),
+        None => format!("no {what} is called so; there are {}", known.collect::<Vec<_>>().join(", ")),
+    }
 }
 
 /// A number that `range` accepts.
@@ -212,6 +220,7 @@ mod tests {
             ("gonio run --theta nan", "0 to 180"),
             ("gonio run --threads 0", "1..=1024"),
             ("gonio check lambert --share 2", "between 0 and 1"),
+            ("gonio calibrate --part false-alarm", "did you mean `false-alarms`?"),
             ("gonio rum", "run"),
         ] {
             let text = usage_error(line);

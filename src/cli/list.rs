@@ -3,6 +3,8 @@
 use super::error::CliError;
 use super::exit::Exit;
 use super::output::emit;
+use crate::cause::Cause;
+use crate::mutants::{self, Mutant};
 use crate::registry::{Kind, Model, Parameter, Registry};
 
 /// Arguments of `gonio list`.
@@ -10,11 +12,16 @@ use crate::registry::{Kind, Model, Parameter, Registry};
 pub struct ListArgs {
     /// Show the parameters of this subject.
     pub name: Option<String>,
+    /// Show the hidden models that gonio is tested on: correct ones with one bug
+    /// each, and negative controls, which look wrong and are right.
+    #[arg(long, conflicts_with = "name")]
+    pub mutants: bool,
 }
 
 /// Shows the subjects, or the parameters of one.
 pub fn list(args: &ListArgs, registry: &Registry) -> Result<Exit, CliError> {
     let text = match &args.name {
+        None if args.mutants => mutants(),
         None => subjects(registry),
         Some(name) => parameters(registry.model(name)?),
     };
@@ -27,6 +34,12 @@ fn subjects(registry: &Registry) -> String {
         .models()
         .map(|m| vec![m.name().to_string(), m.kind().word().to_string(), m.doc().to_string()]);
     table(&["name", "kind", "what it is"], rows.collect())
+}
+
+fn mutants() -> String {
+    let row = |m: Mutant| vec![m.model_name(), m.cause.map_or("none", Cause::slug).into(), m.what.into()];
+    let rows = mutants::all().into_iter().chain(mutants::controls()).map(row);
+    table(&["name", "cause", "what is wrong, or only looks wrong"], rows.collect())
 }
 
 fn parameters(model: &Model) -> String {
@@ -59,7 +72,7 @@ fn when(parameter: &Parameter) -> String {
 }
 
 /// Columns as wide as their widest cell; the last one is not padded.
-fn table(head: &[&str], rows: Vec<Vec<String>>) -> String {
+pub(super) fn table(head: &[&str], rows: Vec<Vec<String>>) -> String {
     let mut all = vec![head.iter().map(ToString::to_string).collect::<Vec<_>>()];
     all.extend(rows);
     let width = |k: usize| all.iter().map(|row| row[k].chars().count()).max().unwrap_or(0);

@@ -1,11 +1,14 @@
 //! The command line: one file per subcommand. Nothing else in gonio knows of it.
 
 mod args;
+mod calibrate;
 mod check;
 mod completions;
 mod error;
 mod exit;
+mod explain;
 mod figures;
+mod interrupt;
 mod list;
 mod main;
 mod output;

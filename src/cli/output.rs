@@ -3,6 +3,7 @@
 use super::args::{Color, Voice};
 use super::error::CliError;
 use std::io::{ErrorKind, IsTerminal, Write, stderr, stdout};
+use std::path::Path;
 
 /// Writes to stdout. A reader that has seen enough is no error.
 pub fn emit(text: &str) -> Result<(), CliError> {
@@ -16,6 +17,12 @@ pub fn emit(text: &str) -> Result<(), CliError> {
 /// Tells people something; not worth ending for if nobody can hear it.
 pub fn tell(text: &str) {
     let _ = writeln!(stderr().lock(), "{text}");
+}
+
+/// Better to find out before an hour of measuring.
+pub fn prove_writable(folder: &Path) -> Result<(), CliError> {
+    let made = std::fs::create_dir_all(folder).and_then(|()| tempfile::tempfile_in(folder));
+    made.map(drop).map_err(|why| CliError::Output { path: folder.into(), why })
 }
 
 impl Voice {

@@ -2,12 +2,55 @@
 
 use super::args::Voice;
 use super::output::tell;
+use crate::calibration;
 use crate::checks::Verdict;
 use crate::engine::{CaseResult, Event};
 use crate::suite::{Case, Plan};
 use indicatif::{ProgressBar, ProgressDrawTarget, ProgressStyle};
 use std::io::{IsTerminal, stderr};
 use std::time::Duration;
+
+/// A bar that is only seen on a terminal.
+fn bar(length: u64, voice: Voice) -> ProgressBar {
+    let shown = stderr().is_terminal() && !voice.quiet;
+    let target = if shown { ProgressDrawTarget::stderr() } else { ProgressDrawTarget::hidden() };
+    let bar = ProgressBar::with_draw_target(Some(length), target);
+    if let Ok(style) = ProgressStyle::with_template("{bar:24} {pos}/{len}, {eta} left  {wide_msg}") {
+        bar.set_style(style);
+    }
+    if shown {
+        // A long case must not look like a hang.
+        bar.enable_steady_tick(Duration::from_millis(250));
+    }
+    bar
+}
+
+/// A bar for the parts of a calibration, one after the other.
+pub struct Steps(ProgressBar);
+
+impl Steps {
+    /// Before the first part.
+    pub fn new(voice: Voice) -> Self {
+        Self(bar(0, voice))
+    }
+
+    /// Shows what a calibration tells.
+    pub fn observe(&self, event: calibration::Event) {
+        match event {
+            calibration::Event::Part { title, steps } => {
+                self.0.reset();
+                self.0.set_length(steps);
+                self.0.set_message(title.to_string());
+            }
+            calibration::Event::Steps(steps) => self.0.inc(steps),
+        }
+    }
+
+    /// Takes the bar away.
+    pub fn finish(&self) {
+        self.0.finish_and_clear();
+    }
+}
 
 /// A bar with failures above it as they are found.
 pub struct Progress {
@@ -19,18 +62,7 @@ pub struct Progress {
 impl Progress {
     /// Nothing done of `plan` yet.
     pub fn new(plan: &Plan, voice: Voice) -> Self {
-        let terminal = stderr().is_terminal();
-        let shown = terminal && !voice.quiet;
-        let target = if shown { ProgressDrawTarget::stderr() } else { ProgressDrawTarget::hidden() };
-        let bar = ProgressBar::with_draw_target(Some(plan.cases.len() as u64), target);
-        if let Ok(style) = ProgressStyle::with_template("{bar:24} {pos}/{len}, {eta} left  {wide_msg}") {
-            bar.set_style(style);
-        }
-        if shown {
-            // A long case must not look like a hang.
-            bar.enable_steady_tick(Duration::from_millis(250));
-        }
-        Self { bar, voice, terminal }
+        Self { bar: bar(plan.cases.len() as u64, voice), voice, terminal: stderr().is_terminal() }
     }
 
     /// Shows what the engine tells.

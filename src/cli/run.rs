@@ -3,7 +3,8 @@
 use super::args::{Format, Measuring, Plots, Voice};
 use super::error::CliError;
 use super::exit::Exit;
-use super::output::{emit, tell};
+use super::interrupt::stop_on_interrupt;
+use super::output::{emit, prove_writable, tell};
 use super::progress::Progress;
 use crate::engine::{self, Event, Options};
 use crate::registry::{Registry, nearest};
@@ -125,7 +126,7 @@ pub fn execute(request: &Request, voice: Voice) -> Result<Exit, CliError> {
     if voice.verbose && request.refused > 0 {
         tell(&format!("left out: {} combinations that their model refuses", request.refused));
     }
-    let stop = stop_on_interrupt()?;
+    let stop = stop_on_interrupt("what was measured is still reported")?;
     let mut exit = None;
     for plan in &request.plans {
         let one = run(plan, request, voice, &stop)?;
@@ -212,24 +213,4 @@ fn page(report: &Report, folder: Option<&Path>, voice: Voice) -> String {
 fn program() -> String {
     let path = std::env::args_os().next().map(PathBuf::from);
     path.and_then(|p| Some(p.file_stem()?.to_str()?.to_string())).unwrap_or_else(|| "gonio".into())
-}
-
-/// Better to find out before an hour of measuring.
-fn prove_writable(folder: &Path) -> Result<(), CliError> {
-    let made = std::fs::create_dir_all(folder).and_then(|()| tempfile::tempfile_in(folder));
-    made.map(drop).map_err(|why| CliError::Output { path: folder.into(), why })
-}
-
-/// The first Ctrl-C ends the run with what it has, the second ends it at once.
-fn stop_on_interrupt() -> Result<Arc<AtomicBool>, CliError> {
-    let stop = Arc::new(AtomicBool::new(false));
-    let flag = stop.clone();
-    ctrlc::set_handler(move || {
-        if flag.swap(true, Ordering::Relaxed) {
-            std::process::exit(Exit::Interrupted as i32);
-        }
-        tell("stopping; what was measured is still reported (Ctrl-C again ends at once)");
-    })
-    .map_err(|e| CliError::Internal(format!("cannot watch for Ctrl-C: {e}")))?;
-    Ok(stop)
 }

@@ -405,7 +405,8 @@ fn is_sound(samples: &Samples, tolerance: f64) -> bool {
     })
 }
 
-fn guarded<T>(
+/// Calls `function`; its panic is an error.
+pub(crate) fn guarded<T>(
     function: &'static str,
     f: impl FnOnce() -> Result<T, SubjectError>,
 ) -> Result<T, SubjectError> {

@@ -27,6 +27,7 @@ pub use fresnel::{FresnelLaw, FresnelLaws};
 pub use gathered::{Company, Evidence, Gatherer, Measurement};
 pub use integrals::{Integrals, SMALLEST_PEAK, refracted};
 pub use jacobian::Jacobian;
+pub(crate) use meter::guarded;
 pub use meter::{Evaluations, Halt, Meter, Sanity, Watch};
 pub use pairs::Pairs;
 pub use samples::{Pilot, SampleIdentities};

@@ -63,7 +63,8 @@ impl Pairs {
             ..Self::default()
         };
         let wi = probes::off_edges(meter, setup, probes::directions(setup, pilot, SPREAD))?;
-        let exchanges = exchange(meter, setup, &wi)?;
+        let mut peak = 0.0;
+        let exchanges = exchange(meter, setup, &wi, &mut peak)?;
         let mut order: Vec<usize> = (0..wi.len()).collect();
         for (wi, e) in wi.iter().zip(&exchanges) {
             found.look(setup, *wi, e);
@@ -72,7 +73,7 @@ impl Pairs {
         order.sort_by(|a, b| exchanges[*b].error.total_cmp(&exchanges[*a].error));
         let chart = Chart::new(setup.wo.phi());
         for &start in order.iter().take(STARTS) {
-            found.climb(meter, setup, &chart, wi[start], exchanges[start].error)?;
+            found.climb(meter, setup, &chart, &mut peak, wi[start], exchanges[start].error)?;
         }
         if meter.description.claims.transport == TransportModes::Both {
             found.adjoint = Some(adjoint(meter, setup, &wi)?);
@@ -101,6 +102,7 @@ impl Pairs {
         meter: &Meter,
         setup: &Setup,
         chart: &Chart,
+        peak: &mut f64,
         mut wi: Direction,
         mut error: f64,
     ) -> Result<(), Halt> {
@@ -115,7 +117,7 @@ impl Pairs {
                     chart.to_direction([u, (v + dv).clamp(0.0, 1.0)])
                 })
                 .collect();
-            for (there, e) in around.iter().zip(exchange(meter, setup, &around)?) {
+            for (there, e) in around.iter().zip(exchange(meter, setup, &around, peak)?) {
                 self.look(setup, *there, &e);
                 if e.error > error {
                     (wi, error) = (*there, e.error);
@@ -185,28 +187,34 @@ fn eta_squared(setup: &Setup, w: Direction, transport: Transport) -> f64 {
     }
 }
 
-fn exchange(meter: &Meter, setup: &Setup, wi: &[Direction]) -> Result<Vec<Exchange>, Halt> {
+/// Compares both ways at each of `wi`, beside the largest value met so far, `peak`.
+fn exchange(meter: &Meter, setup: &Setup, wi: &[Direction], peak: &mut f64) -> Result<Vec<Exchange>, Halt> {
     let channels = meter.channels();
-    let (mut forward, mut backward) = (Vec::new(), Vec::new());
+    let (mut forward, mut backward, mut back) = (Vec::new(), Vec::new(), Vec::new());
     meter.eval(setup.wo, wi, setup.transport, &mut forward)?;
+    for wi in wi {
+        meter.eval(*wi, &[setup.wo], setup.transport, &mut back)?;
+        backward.extend_from_slice(&back);
+    }
+    *peak = forward.iter().chain(&backward).copied().fold(*peak, f64::max);
+    let difference = |a, b| asymmetry(setup, a, b, *peak);
     let mut all = Vec::with_capacity(wi.len());
     for (k, wi) in wi.iter().enumerate() {
-        meter.eval(*wi, &[setup.wo], setup.transport, &mut backward)?;
         let mut worst = Exchange::default();
-        for c in 0..channels {
-            let (f, b) = (forward[k * channels + c], backward[c]);
+        for c in k * channels..(k + 1) * channels {
+            let (f, b) = (forward[c], backward[c]);
             let scaled = |t| (f / eta_squared(setup, setup.wo, t), b / eta_squared(setup, *wi, t));
             let (a, z) = scaled(setup.transport);
             let (there, back) = scaled(setup.transport.other());
-            worst.error_rescaled = worst.error_rescaled.max(relative_error(there, back, setup.floor()));
-            let error = relative_error(a, z, setup.floor());
+            worst.error_rescaled = worst.error_rescaled.max(difference(there, back));
+            let error = difference(a, z);
             let (cos_o, cos_i) = (setup.wo.abs_cos_theta(), wi.abs_cos_theta());
             let other = match meter.cosine.get() {
-                Cosine::Excluded => relative_error(a * cos_o, z * cos_i, setup.floor()),
-                Cosine::Included => relative_error(a * cos_i, z * cos_o, setup.floor()),
+                Cosine::Excluded => difference(a * cos_o, z * cos_i),
+                Cosine::Included => difference(a * cos_i, z * cos_o),
             };
             worst.error_other = worst.error_other.max(other);
-            if !(error <= worst.error) || c == 0 {
+            if !(error <= worst.error) || c == k * channels {
                 let signed = (a - z) / a.max(z).max(setup.floor());
                 worst = Exchange { error, signed, forward: f, backward: b, ..worst };
             }
@@ -216,6 +224,14 @@ fn exchange(meter: &Meter, setup: &Setup, wi: &[Direction]) -> Result<Vec<Exchan
     Ok(all)
 }
 
+/// The relative difference of two values, which is within the tolerance where it is
+/// within rounding of the largest value: a factor such as 1 − F next to the critical
+/// angle has no more digits than its terms leave.
+fn asymmetry(setup: &Setup, a: f64, b: f64, peak: f64) -> f64 {
+    let error = relative_error(a, b, setup.floor());
+    if (a - b).abs() <= setup.rounding() * peak { error.min(setup.tolerance()) } else { error }
+}
+
 /// eval in one mode against the exchanged eval in the other.
 fn adjoint(meter: &Meter, setup: &Setup, wi: &[Direction]) -> Result<Tally, Halt> {
     let mut tally = Tally::new(setup.tolerance());
@@ -223,11 +239,12 @@ fn adjoint(meter: &Meter, setup: &Setup, wi: &[Direction]) -> Result<Tally, Halt
     let channels = meter.channels();
     let (mut own, mut exchanged) = (Vec::new(), Vec::new());
     meter.eval(setup.wo, wi, setup.transport, &mut own)?;
+    let peak = own.iter().copied().fold(0.0, f64::max);
     for (k, wi) in wi.iter().enumerate() {
         meter.eval(*wi, &[setup.wo], other, &mut exchanged)?;
         for c in 0..channels {
             let (a, b) = (own[k * channels + c], exchanged[c]);
-            tally.look(relative_error(a, b, setup.floor()), || {
+            tally.look(asymmetry(setup, a, b, peak), || {
                 Place::pair(setup.wo, *wi).value("eval(wo, wi)", a).value("eval*(wi, wo)", b)
             });
         }

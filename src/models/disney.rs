@@ -53,7 +53,7 @@ pub struct Disney {
     sheen: [f64; 3],
     distribution: Ggx,
     masking_alpha2: f64,
-    coat: Gtr1,
+    pub(crate) coat: Gtr1,
     /// Means over the channels by which lobes are chosen.
     diffuse_mean: f64,
     specular_mean: f64,
@@ -71,21 +71,8 @@ const SAFE_ALBEDO: f64 = 0.95;
 
 /// The registered model `disney`.
 pub(super) fn model() -> Model {
-    let read = |p: &Parameters| DisneyParameters {
-        base: ["r", "g", "b"].map(|c| p.number(c)),
-        subsurface: p.number("subsurface"),
-        metallic: p.number("metallic"),
-        specular: p.number("specular"),
-        specular_tint: p.number("specular_tint"),
-        roughness: p.number("roughness"),
-        anisotropic: p.number("anisotropic"),
-        sheen: p.number("sheen"),
-        sheen_tint: p.number("sheen_tint"),
-        clearcoat: p.number("clearcoat"),
-        clearcoat_gloss: p.number("clearcoat_gloss"),
-    };
     let unit = |model: Model, name: &str, default, doc| model.number(name, default, 0.0..=1.0, doc);
-    let model = Model::new("disney", "the principled BRDF (Burley 2012)", move |p| Ok(Disney::new(read(p))));
+    let model = Model::new("disney", "the principled BRDF (Burley 2012)", Disney::declared);
     let model = unit(model, "r", 0.65, "red reflectance of the base, linear");
     let model = unit(model, "g", 0.4, "green");
     let model = unit(model, "b", 0.05, "blue");
@@ -149,6 +136,23 @@ fn mean(values: [f64; 3]) -> f64 {
 }
 
 impl Disney {
+    /// As the registered model reads its parameters.
+    pub(crate) fn declared(p: &Parameters) -> Result<Self, String> {
+        Ok(Self::new(DisneyParameters {
+            base: ["r", "g", "b"].map(|c| p.number(c)),
+            subsurface: p.number("subsurface"),
+            metallic: p.number("metallic"),
+            specular: p.number("specular"),
+            specular_tint: p.number("specular_tint"),
+            roughness: p.number("roughness"),
+            anisotropic: p.number("anisotropic"),
+            sheen: p.number("sheen"),
+            sheen_tint: p.number("sheen_tint"),
+            clearcoat: p.number("clearcoat"),
+            clearcoat_gloss: p.number("clearcoat_gloss"),
+        }))
+    }
+
     /// From what an artist sets.
     pub fn new(p: DisneyParameters) -> Self {
         // Burley's approximation of luminance.
@@ -181,7 +185,7 @@ impl Disney {
 
     /// Shares of the cosine, of normals visible from wo, and of the coat's normals.
     #[inline]
-    fn shares(&self, wo: Direction) -> [f64; 3] {
+    pub(crate) fn shares(&self, wo: Direction) -> [f64; 3] {
         let weight = schlick_weight(wo.z);
         // Even where F(θo) = 0, some facets reflect.
         let specular = mix(self.specular_mean, 1.0, weight).max(f64::MIN_POSITIVE);

@@ -2,7 +2,7 @@
 
 use super::lambert::sample_cosine;
 use crate::bsdf::{Bsdf, Description, Direction, Lobe, Sample, Spectrum, Transport};
-use crate::registry::Model;
+use crate::registry::{Model, Parameters};
 use std::f64::consts::PI;
 
 /// Diffuse reflection of V-grooves with Lambertian walls, in the qualitative
@@ -18,14 +18,21 @@ pub struct OrenNayar {
 
 /// The registered model `oren-nayar`.
 pub(super) fn model() -> Model {
-    Model::new("oren-nayar", "rough diffuse reflection (Oren and Nayar 1994, qualitative form)", |p| {
-        Ok(OrenNayar::new(p.number("reflectance"), p.number("sigma").to_radians()))
-    })
+    Model::new(
+        "oren-nayar",
+        "rough diffuse reflection (Oren and Nayar 1994, qualitative form)",
+        OrenNayar::declared,
+    )
     .number("reflectance", 0.8, 0.0..=1.0, "share of the light that a facet reflects")
     .number("sigma", 20.0, 0.0..=90.0, "standard deviation of the facets' slope angle, degrees")
 }
 
 impl OrenNayar {
+    /// As the registered model reads its parameters.
+    pub(crate) fn declared(p: &Parameters) -> Result<Self, String> {
+        Ok(Self::new(p.number("reflectance"), p.number("sigma").to_radians()))
+    }
+
     /// With facets of `reflectance` in [0, 1] whose slope angle has the
     /// standard deviation `sigma` in radians.
     pub fn new(reflectance: f64, sigma: f64) -> Self {

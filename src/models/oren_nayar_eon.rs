@@ -4,7 +4,7 @@ use super::clipped_cosine::ClippedCosine;
 use super::lambert::{sample_cosine, sample_uniform};
 use super::mixture;
 use crate::bsdf::{Bsdf, Description, Direction, Lobe, Sample, Spectrum, Transport};
-use crate::registry::Model;
+use crate::registry::{Model, Parameters};
 use std::f64::consts::PI;
 
 /// The directional albedo of one bounce at grazing, less A, over B: 1/2 − 2/(3π).
@@ -34,12 +34,12 @@ pub enum EonSampling {
 #[derive(Clone, Copy, Debug)]
 pub struct OrenNayarEon {
     reflectance: f64,
-    roughness: f64,
+    pub(crate) roughness: f64,
     sampling: EonSampling,
     /// A.
     a: f64,
     /// ρ_ms/π A r/(1/2 − 2/3π − mean): so written, nothing is 0/0 at r = 0.
-    multiple: f64,
+    pub(crate) multiple: f64,
 }
 
 /// The registered model `oren-nayar-eon`.
@@ -47,14 +47,7 @@ pub(super) fn model() -> Model {
     Model::new(
         "oren-nayar-eon",
         "rough diffuse reflection, energy-preserving (Portsmouth et al. 2025)",
-        |p| {
-            let sampling = match p.text("sampling") {
-                "cosine" => EonSampling::Cosine,
-                "uniform" => EonSampling::Uniform,
-                _ => EonSampling::ClippedCosine,
-            };
-            Ok(OrenNayarEon::new(p.number("reflectance"), p.number("roughness"), sampling))
-        },
+        OrenNayarEon::declared,
     )
     .number("reflectance", 0.8, 0.0..=1.0, "share of the light that a facet reflects")
     .number("roughness", 0.5, 0.0..=1.0, "0: Lambert's; 1: the roughest")
@@ -66,6 +59,16 @@ pub(super) fn model() -> Model {
 }
 
 impl OrenNayarEon {
+    /// As the registered model reads its parameters.
+    pub(crate) fn declared(p: &Parameters) -> Result<Self, String> {
+        let sampling = match p.text("sampling") {
+            "cosine" => EonSampling::Cosine,
+            "uniform" => EonSampling::Uniform,
+            _ => EonSampling::ClippedCosine,
+        };
+        Ok(Self::new(p.number("reflectance"), p.number("roughness"), sampling))
+    }
+
     /// With facets of `reflectance` ρ and a `roughness` r, each in [0, 1].
     pub fn new(reflectance: f64, roughness: f64, sampling: EonSampling) -> Self {
         let a = 1.0 / (1.0 + GRAZING * roughness);
@@ -77,7 +80,7 @@ impl OrenNayarEon {
 
     /// (1 − E(μ))/(A r).
     #[inline]
-    fn lost(&self, mu: f64) -> f64 {
+    pub(crate) fn lost(&self, mu: f64) -> f64 {
         // 0 at grazing but for rounding.
         (GRAZING - gained(mu)).max(0.0)
     }

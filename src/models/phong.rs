@@ -3,7 +3,7 @@
 use super::lambert::sample_cosine;
 use super::{cosine_lobe, mixture};
 use crate::bsdf::{Bsdf, Description, Direction, Lobe, Sample, Spectrum, Transport};
-use crate::registry::Model;
+use crate::registry::{Model, Parameters};
 use std::f64::consts::{PI, TAU};
 
 /// f = kd/π + ks (n + 2)/2π cosⁿα on the front side, α the angle between wi and
@@ -18,17 +18,19 @@ use std::f64::consts::{PI, TAU};
 /// (n + 2)/2π ∫cosⁿ⁺¹θ = 1.
 #[derive(Clone, Copy, Debug)]
 pub struct Phong {
-    kd: f64,
-    ks: f64,
-    exponent: f64,
-    shares: [f64; 2],
+    pub(crate) kd: f64,
+    pub(crate) ks: f64,
+    pub(crate) exponent: f64,
+    pub(crate) shares: [f64; 2],
 }
 
 /// The registered model `phong`.
 pub(super) fn model() -> Model {
-    Model::new("phong", "diffuse and a cosⁿ lobe about the mirror (Lafortune and Willems 1994)", |p| {
-        Phong::new(p.number("kd"), p.number("ks"), p.number("exponent"))
-    })
+    Model::new(
+        "phong",
+        "diffuse and a cosⁿ lobe about the mirror (Lafortune and Willems 1994)",
+        Phong::declared,
+    )
     .number("kd", 0.4, 0.0..=1.0, "share of the light that is reflected diffusely")
     .number("ks", 0.5, 0.0..=1.0, "share that goes to the lobe, at normal incidence; kd + ks ≤ 1")
     .number("exponent", 30.0, 0.0..=1e5, "n: the larger, the narrower the lobe")
@@ -36,6 +38,11 @@ pub(super) fn model() -> Model {
 }
 
 impl Phong {
+    /// As the registered model reads its parameters.
+    pub(crate) fn declared(p: &Parameters) -> Result<Self, String> {
+        Phong::new(p.number("kd"), p.number("ks"), p.number("exponent"))
+    }
+
     /// `kd` and `ks` in [0, 1] with kd + ks ≤ 1; `exponent` n ≥ 0.
     pub fn new(kd: f64, ks: f64, exponent: f64) -> Result<Self, String> {
         // What people type, such as 0.9 + 0.1, may round to more than 1.

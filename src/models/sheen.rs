@@ -3,7 +3,7 @@
 use super::lambert::HemisphereSampling;
 use super::microfacet::half_vector;
 use crate::bsdf::{Bsdf, Description, Direction, Lobe, Sample, Spectrum, Transport};
-use crate::registry::Model;
+use crate::registry::{Model, Parameters};
 use std::f64::consts::TAU;
 
 /// Coefficients a to e of L(x) = a/(1 + b xᶜ) + d x + e, fitted to Smith's ln Λ at
@@ -35,21 +35,28 @@ pub struct Sheen {
 
 /// The registered model `sheen`.
 pub(super) fn model() -> Model {
-    Model::new("sheen", "microfacet sheen of cloth (Estevez and Kulla 2017)", |p| {
-        Ok(Sheen::new(
+    Model::new("sheen", "microfacet sheen of cloth (Estevez and Kulla 2017)", Sheen::declared)
+        .number("reflectance", 1.0, 0.0..=1.0, "factor of the whole")
+        .number("roughness", 0.3, 0.05..=1.0, "r: the smaller, the more the fibres stand upright")
+        .choice(
+            "terminator",
+            &["plain", "softened"],
+            "softened gives up reciprocity for a soft edge of light",
+        )
+        .choice("sampling", &["uniform", "cosine"], "density of sampled directions")
+}
+
+impl Sheen {
+    /// As the registered model reads its parameters.
+    pub(crate) fn declared(p: &Parameters) -> Result<Self, String> {
+        Ok(Self::new(
             p.number("reflectance"),
             p.number("roughness"),
             p.text("terminator") == "softened",
             HemisphereSampling::named(p.text("sampling")),
         ))
-    })
-    .number("reflectance", 1.0, 0.0..=1.0, "factor of the whole")
-    .number("roughness", 0.3, 0.05..=1.0, "r: the smaller, the more the fibres stand upright")
-    .choice("terminator", &["plain", "softened"], "softened gives up reciprocity for a soft edge of light")
-    .choice("sampling", &["uniform", "cosine"], "density of sampled directions")
-}
+    }
 
-impl Sheen {
     /// `reflectance` in [0, 1], `roughness` r in (0, 1].
     pub fn new(reflectance: f64, roughness: f64, softened: bool, sampling: HemisphereSampling) -> Self {
         let s = (1.0 - roughness) * (1.0 - roughness);

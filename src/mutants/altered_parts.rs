@@ -12,7 +12,6 @@ type Density = fn(&MaskedDistribution, Direction) -> f64;
 type Masking = fn(&MaskedDistribution, Direction, Direction) -> f64;
 type Lambda = fn(&MaskedDistribution, Direction) -> f64;
 type Draw = fn(&MaskedDistribution, &[f64]) -> Direction;
-type DrawVisible = fn(&MaskedDistribution, Direction, &[f64]) -> Option<Direction>;
 
 /// A correct distribution of which a function is changed.
 #[derive(Clone)]
@@ -23,7 +22,6 @@ pub(super) struct AlteredNormals {
     lambda: Option<Lambda>,
     pdf: Option<Density>,
     draw: Draw,
-    draw_visible: DrawVisible,
 }
 
 impl AlteredNormals {
@@ -36,7 +34,6 @@ impl AlteredNormals {
             lambda: None,
             pdf: None,
             draw: |d, u| d.sample(u),
-            draw_visible: |d, wo, u| d.sample_visible(wo, u),
         })
     }
 
@@ -63,11 +60,6 @@ impl AlteredNormals {
     /// Normals are drawn so.
     pub fn draw(self, draw: Draw) -> Self {
         Self { draw, ..self }
-    }
-
-    /// Visible normals are drawn so.
-    pub fn draw_visible(self, draw_visible: DrawVisible) -> Self {
-        Self { draw_visible, ..self }
     }
 
     /// As a mutant builds it.
@@ -108,7 +100,7 @@ impl NormalDistribution for AlteredNormals {
     }
 
     fn sample_visible(&self, wo: Direction, u: &[f64]) -> Option<Direction> {
-        (self.draw_visible)(&self.correct, wo, u)
+        self.correct.sample_visible(wo, u)
     }
 
     fn lambda(&self, w: Direction) -> Option<f64> {

@@ -72,9 +72,7 @@ fn of_flags() -> Vec<Mutant> {
             "plastic:reflectance=0.3",
             "pdf() of the base is cos θ/π, though the coat's mirror is drawn too",
             |p, _| {
-                Altered::of(Plastic::declared(p)?)
-                    .pdf_times(|m, wo, wi| wi.z / PI / m.pdf(wo, wi, R))
-                    .made()
+                Altered::of(Plastic::declared(p)?).pdf_times(|m, wo, wi| wi.z / PI / m.pdf(wo, wi, R)).made()
             },
         )
         .source("C22-02 tungsten@66bda36: discrete and continuous lobes mixed")

@@ -138,7 +138,9 @@ pub(super) fn mutants() -> Vec<Mutant> {
             "fresnel",
             "reflectance() takes η and not 1/η for light from inside",
             |p, _| {
-                AlteredFresnel::of(Fresnel::declared(p)?).reflectance(|f, cos| f.reflectance(cos.abs())).made()
+                AlteredFresnel::of(Fresnel::declared(p)?)
+                    .reflectance(|f, cos| f.reflectance(cos.abs()))
+                    .made()
             },
         )
         .source("C08-01 pbrt-v3@478b2e6, pbrt-v3#254")

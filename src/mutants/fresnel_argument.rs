@@ -115,11 +115,16 @@ fn of_functions() -> Vec<Mutant> {
         .source("C17-02 student CS184")
         .varied(&[("eta", 1.1, 3.0)])
         .must_fail(&["fresnel"]),
-        Mutant::new("fresnel-of-squared-cosine", "fresnel", "reflectance() takes cos² θ for cos θ", |p, _| {
-            AlteredFresnel::of(Fresnel::declared(p)?)
-                .reflectance(|f, cos| f.reflectance(cos * cos.abs()))
-                .made()
-        })
+        Mutant::new(
+            "fresnel-of-squared-cosine",
+            "fresnel",
+            "reflectance() takes cos² θ for cos θ",
+            |p, _| {
+                AlteredFresnel::of(Fresnel::declared(p)?)
+                    .reflectance(|f, cos| f.reflectance(cos * cos.abs()))
+                    .made()
+            },
+        )
         .source("C17: a wrong cosine")
         .varied(&[("eta", 1.1, 3.0)])
         .must_fail(&["fresnel"]),
@@ -154,9 +159,7 @@ fn of_functions() -> Vec<Mutant> {
             |p, _| {
                 AlteredFresnel::of(Fresnel::declared(p)?)
                     .reflectance(|f, cos| match f {
-                        Fresnel::Schlick(f0) => {
-                            Spectrum::from(f0 + (1.0 - f0) * (1.0 - cos.abs()).powi(4))
-                        }
+                        Fresnel::Schlick(f0) => Spectrum::from(f0 + (1.0 - f0) * (1.0 - cos.abs()).powi(4)),
                         _ => f.reflectance(cos),
                     })
                     .made()

@@ -12,11 +12,7 @@ pub(super) fn mutants() -> Vec<Mutant> {
             "importance-not-handled",
             "rough-dielectric:alpha=0.3",
             "importance is scaled as radiance",
-            |p, _| {
-                Altered::of(RoughDielectric::declared(p)?)
-                    .eval(|m, wo, wi, _| m.eval(wo, wi, R))
-                    .made()
-            },
+            |p, _| Altered::of(RoughDielectric::declared(p)?).eval(|m, wo, wi, _| m.eval(wo, wi, R)).made(),
         )
         .source("C21-01 Mitsuba 3@83855d84a pplastic")
         .varied(&[("alpha", 0.05, 0.8), ("eta", 1.2, 2.5)])

@@ -32,6 +32,17 @@ impl Summary {
     }
 }
 
+impl Machine {
+    /// The one that this runs on.
+    pub fn this() -> Self {
+        Self {
+            os: std::env::consts::OS.into(),
+            arch: std::env::consts::ARCH.into(),
+            cores: std::thread::available_parallelism().map_or(1, usize::from),
+        }
+    }
+}
+
 impl Report {
     /// The report of a run that began at `started` (RFC 3339, UTC).
     pub fn new(plan: &Plan, results: &Results, started: String, files: &Files) -> Self {
@@ -45,11 +56,7 @@ impl Report {
             false_alarm: plan.false_alarm,
             started,
             duration_s: results.seconds,
-            machine: Machine {
-                os: std::env::consts::OS.into(),
-                arch: std::env::consts::ARCH.into(),
-                cores: std::thread::available_parallelism().map_or(1, usize::from),
-            },
+            machine: Machine::this(),
             partial: results.partial.clone(),
             summary: Summary::count(&rows),
             results: rows,

@@ -1,13 +1,14 @@
 //! Curves: albedo against angle, and the p-values of a run.
 
 use super::axes::{Axes, mark};
-use super::colours::{BAND, INK, LINES, Rgb, SOFT_INK};
+use super::colours::{BAND, LINES, Rgb, SOFT_INK};
 use super::figure::{Anchor, Figure, Pen, Type, shortened};
+use super::histogram::Histogram;
 use crate::bsdf::{SubjectKind, Transport};
 use crate::evidence::Evidence;
 use crate::statistics::uniformity::kolmogorov_smirnov;
 
-const WIDTH: f64 = 760.0;
+pub(super) const WIDTH: f64 = 760.0;
 
 /// A deviation of a mean beyond this is drawn at the edge, in standard errors.
 const MOST_DEVIATIONS: f64 = 6.0;
@@ -155,46 +156,21 @@ pub fn p_values(values: &[f64]) -> Option<String> {
     if values.is_empty() {
         return None;
     }
-    let n = values.len();
-    let mut counts = [0u64; BINS];
+    let mut counts = vec![0u64; BINS];
     for p in &values {
         counts[((p * BINS as f64) as usize).min(BINS - 1)] += 1;
     }
-    let (statistic, ks) = kolmogorov_smirnov(&mut values);
-    let share = 1.0 / BINS as f64;
-    let level = n as f64 * share;
-    let sigma = (level * (1.0 - share)).sqrt();
-    let top = counts.iter().fold(level + 2.0 * sigma, |top, c| top.max(*c as f64)) * 1.1;
-
-    let facts = format!("{n} values;  Kolmogorov–Smirnov D = {statistic:.3}, p = {}", probability(ks));
-    let description = format!("{facts}. Histogram in {BINS} bins; where every subject is right it is flat.");
-    let mut figure = Figure::new(WIDTH, 430.0, "p-values of the run", &description);
-    let bold = Type::new(Anchor::Start).size(20.0).bold();
-    figure.text((20.0, 26.0), "p-values of the run", bold);
-    figure.text((20.0, 52.0), &facts, Type::new(Anchor::Start));
-    let axes = Axes { from: (96.0, 76.0), to: (590.0, 370.0), x: (0.0, 1.0), y: (0.0, top) };
-    axes.band(&mut figure, level - 2.0 * sigma, level + 2.0 * sigma, BAND);
-    for (k, count) in counts.iter().enumerate() {
-        let (left, right) = (k as f64 * share, (k + 1) as f64 * share);
-        let (from, to) = (axes.place(left, *count as f64), axes.place(right, 0.0));
-        if *count > 0 {
-            let outline = [(from.0, to.1), from, (to.0, from.1), to];
-            figure.line(&outline, Pen::new(LINES[0], 2.0));
-        }
-    }
-    axes.draw(&mut figure, &[0.0, 0.2, 0.4, 0.6, 0.8, 1.0], 5.0, "p-value", "cases");
-    let ends = [axes.place(0.0, level), axes.place(1.0, level)];
-    figure.line(&ends, Pen::new(INK, 1.6).dashed());
-    let small = Type::new(Anchor::Start).size(15.0).colour(SOFT_INK);
-    let note = ["dashed: uniform", "band: ± 2 σ", "of a bin"];
-    for (k, text) in note.into_iter().enumerate() {
-        figure.text((604.0, axes.place(0.0, level).1 + 21.0 * (k as f64 - 1.0)), text, small);
-    }
-    Some(figure.finish())
-}
-
-fn probability(p: f64) -> String {
-    if p >= 1e-3 { format!("{p:.3}") } else { format!("{p:.0e}").replace('-', "−") }
+    let (distance, p) = kolmogorov_smirnov(&mut values);
+    let histogram = Histogram {
+        title: "p-values of the run".into(),
+        name_y: "cases".into(),
+        distance,
+        p,
+        counts,
+        deviations: 2.0,
+        band: "± 2 σ".into(),
+    };
+    Some(histogram.svg())
 }
 
 #[cfg(test)]

@@ -19,10 +19,10 @@ use std::sync::Arc;
 /// on Kulla and Conty's slides).
 #[derive(Clone, Debug)]
 pub struct GgxMultiscatter {
-    single: TorranceSparrow,
-    loss: Arc<GgxLoss>,
+    pub(crate) single: TorranceSparrow,
+    pub(crate) loss: Arc<GgxLoss>,
     /// F_ms/(π (1 − E_avg)).
-    scale: Spectrum,
+    pub(crate) scale: Spectrum,
     /// F_ms over F_avg, both averaged over channels: by how much less a loss is
     /// made good than its light was reflected once.
     made_good: f64,
@@ -84,7 +84,7 @@ impl GgxMultiscatter {
     /// The probability of drawing from the lobe of many bounces: about its share
     /// of the light.
     #[inline]
-    fn share(&self, wo: Direction) -> f64 {
+    pub(crate) fn share(&self, wo: Direction) -> f64 {
         let lost = self.loss.at(wo.z.min(1.0));
         let back = lost * self.made_good;
         back / (1.0 - lost + back)
@@ -98,7 +98,7 @@ impl GgxMultiscatter {
 
     /// The density of wi in the lobe of many bounces.
     #[inline]
-    fn multiple_density(&self, wi: Direction) -> f64 {
+    pub(crate) fn multiple_density(&self, wi: Direction) -> f64 {
         self.loss.at(wi.z.min(1.0)) * wi.z / (PI * self.loss.average())
     }
 }

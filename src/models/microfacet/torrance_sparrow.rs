@@ -142,6 +142,18 @@ impl TorranceSparrow {
         }
     }
 
+    /// A normal as it is drawn for wo; it may face away.
+    #[inline]
+    pub(crate) fn facet(&self, wo: Direction, u: &[f64]) -> Option<Direction> {
+        match (self.sampling, self.masking) {
+            (NormalSampling::All, _) => Some(self.distribution.sample(u)),
+            (NormalSampling::Visible, Masking::Smith) => self.distribution.sample_visible(wo, u),
+            (NormalSampling::Visible, Masking::VCavity) => {
+                Some(v_cavity::visible_wall(wo, self.distribution.sample(u), u[2]))
+            }
+        }
+    }
+
     /// The area by which Smith's functions mask `w`; not used by grooves.
     #[inline]
     fn masked_area(&self, w: Direction) -> f64 {
@@ -212,13 +224,7 @@ impl Bsdf for TorranceSparrow {
         if wo.z <= 0.0 {
             return None;
         }
-        let m = match (self.sampling, self.masking) {
-            (NormalSampling::All, _) => self.distribution.sample(u),
-            (NormalSampling::Visible, Masking::Smith) => self.distribution.sample_visible(wo, u)?,
-            (NormalSampling::Visible, Masking::VCavity) => {
-                v_cavity::visible_wall(wo, self.distribution.sample(u), u[2])
-            }
-        };
+        let m = self.facet(wo, u)?;
         let om = wo.dot(m);
         let wi = wo.reflected(m);
         if om <= 0.0 || wi.z <= 0.0 {
