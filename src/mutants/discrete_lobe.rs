@@ -140,7 +140,9 @@ fn of_lobes() -> Vec<Mutant> {
         .source("C22: a density told for a probability")
         .strength(0.1, 0.5, "the told probability is 1 + epsilon times too large")
         .varied(&[("reflectance", 0.1, 0.9), ("eta", 1.3, 2.0)])
-        .must_fail(&["discrete-lobes", "albedo", "mis"]),
+        .must_fail(&["discrete-lobes", "albedo", "mis"])
+        // Near grazing the mirror has nearly all light, and more than that is told.
+        .may_fail(&["energy"]),
         Mutant::new(
             "mirror-not-divided-by-probability",
             "plastic:reflectance=1",

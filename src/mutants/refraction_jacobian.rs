@@ -67,7 +67,7 @@ pub(super) fn mutants() -> Vec<Mutant> {
         .must_fail(DENSITY),
         Mutant::new(
             "no-facet-cosine-in-refraction-jacobian",
-            "rough-dielectric:alpha=0.5,sampling=normals,eta=1.7",
+            "rough-dielectric:alpha=0.5,eta=1.7",
             "pdf() of what is refracted lacks the factor |wi·h| of |dωm/dωi|",
             |p, _| {
                 Altered::of(RoughDielectric::declared(p)?)
