@@ -119,7 +119,7 @@ fn undefined() -> Vec<Mutant> {
             },
         )
         .source("C20-05 Cycles EON 7202f6df4: 0/0 as σ → 0")
-        .varied(&[("reflectance", 0.1, 1.0)])
+        .varied(&[("reflectance", 0.1, 0.95)])
         .must_fail(&["sanity"]),
         Mutant::new(
             "power-of-a-negative",
@@ -252,7 +252,7 @@ fn imprecise() -> Vec<Mutant> {
         .may_fail(&["distribution", "jacobian"]),
         Mutant::new(
             "pole-of-the-lobe",
-            "torrance-sparrow:alpha=0.05",
+            "torrance-sparrow:alpha=0.1",
             "D = 1 where sin² θh < 1e-4, in eval() and pdf()",
             |p, _| {
                 let hole = |m: &TorranceSparrow, wo: Direction, wi: Direction| {
@@ -263,10 +263,11 @@ fn imprecise() -> Vec<Mutant> {
             },
         )
         .source("C23-07 dspbr-pt c3c3eb8")
-        .varied(&[("alpha", 0.03, 0.07)])
-        .must_fail(&["goodness-of-fit", "normalization", "albedo", "mis"])
-        // Few of its points may lie in the hole.
-        .may_fail(&["jacobian"]),
+        .varied(&[("alpha", 0.07, 0.12)])
+        .must_fail(&["goodness-of-fit", "normalization", "albedo"])
+        // Few points of jacobian may lie in the hole, and the balance heuristic hides
+        // half of it.
+        .may_fail(&["jacobian", "mis"]),
         Mutant::new(
             "cancelling-distribution",
             "torrance-sparrow:alpha=0.001",

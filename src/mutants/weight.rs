@@ -124,6 +124,20 @@ pub(super) fn mutants() -> Vec<Mutant> {
         .varied(&[("alpha", 0.05, 0.8)])
         .must_fail(WEIGHT),
         Mutant::new(
+            "weight-scaled",
+            "torrance-sparrow:alpha=0.3",
+            "the weight is too large by the factor 1 + ε",
+            |p, e| {
+                Altered::of(TorranceSparrow::declared(p)?)
+                    .finish(move |_, _, _, s| Some(Sample { weight: s.weight * (1.0 + e), ..s }))
+                    .made()
+            },
+        )
+        .source("C15: a constant in the weight alone")
+        .strength(0.05, 1.0, "the weight is 1 + epsilon times too large")
+        .varied(&[("alpha", 0.05, 0.8)])
+        .must_fail(&["weight", "albedo", "mis"]),
+        Mutant::new(
             "returned-pdf-scaled",
             "oren-nayar-eon",
             "the pdf that comes with a sample is 1 + ε times pdf()",
