@@ -12,6 +12,11 @@ pub(super) fn mutants() -> Vec<Mutant> {
     [undefined(), out_of_range(), imprecise()].concat()
 }
 
+/// A factor that is NaN where `x` is, and changes nothing elsewhere.
+fn nan_or_one(x: f64) -> f64 {
+    if x.is_nan() { x } else { 1.0 }
+}
+
 /// 0/0 and the like at single inputs.
 fn undefined() -> Vec<Mutant> {
     vec![
@@ -64,8 +69,7 @@ fn undefined() -> Vec<Mutant> {
                 Altered::of(OrenNayar::declared(p)?)
                     .eval_times(|_, wo, wi| {
                         let sines = wo.x.hypot(wo.y) * wi.x.hypot(wi.y);
-                        // sin θo sin θi cos Δφ: what was divided comes back.
-                        sines / sines
+                        nan_or_one((wo.x * wi.x + wo.y * wi.y) / sines)
                     })
                     .made()
             },
@@ -114,12 +118,17 @@ fn undefined() -> Vec<Mutant> {
             "oren-nayar-eon:roughness=0",
             "(1 − E(μo)) (1 − E(μi)) is divided by 1 − E_avg = 0",
             |p, _| {
-                // Both are proportional to the roughness.
-                Altered::of(OrenNayarEon::declared(p)?).eval_times(|m, _, _| m.roughness / m.roughness).made()
+                Altered::of(OrenNayarEon::declared(p)?)
+                    .eval_times(|m, wo, wi| {
+                        // All three are proportional to the roughness.
+                        let lost = |w: Direction| m.roughness * m.lost(w.z.min(1.0));
+                        nan_or_one(lost(wo) * lost(wi) / m.roughness)
+                    })
+                    .made()
             },
         )
         .source("C20-05 Cycles EON 7202f6df4: 0/0 as σ → 0")
-        .varied(&[("reflectance", 0.1, 1.0)])
+        .varied(&[("reflectance", 0.1, 0.95)])
         .must_fail(&["sanity"]),
         Mutant::new(
             "power-of-a-negative",
@@ -127,10 +136,7 @@ fn undefined() -> Vec<Mutant> {
             "the cosine is not cut at 0 before it is raised to a power",
             |p, _| {
                 Altered::of(Phong::declared(p)?)
-                    .eval_times(|m, wo, wi| {
-                        let power = wo.mirrored().dot(wi).powf(m.exponent);
-                        if power.is_nan() { power } else { 1.0 }
-                    })
+                    .eval_times(|m, wo, wi| nan_or_one(wo.mirrored().dot(wi).powf(m.exponent)))
                     .made()
             },
         )
@@ -252,7 +258,7 @@ fn imprecise() -> Vec<Mutant> {
         .may_fail(&["distribution", "jacobian"]),
         Mutant::new(
             "pole-of-the-lobe",
-            "torrance-sparrow:alpha=0.05",
+            "torrance-sparrow:alpha=0.1",
             "D = 1 where sin² θh < 1e-4, in eval() and pdf()",
             |p, _| {
                 let hole = |m: &TorranceSparrow, wo: Direction, wi: Direction| {
@@ -263,10 +269,11 @@ fn imprecise() -> Vec<Mutant> {
             },
         )
         .source("C23-07 dspbr-pt c3c3eb8")
-        .varied(&[("alpha", 0.03, 0.07)])
-        .must_fail(&["goodness-of-fit", "normalization", "albedo", "mis"])
-        // Few of its points may lie in the hole.
-        .may_fail(&["jacobian"]),
+        .varied(&[("alpha", 0.07, 0.12)])
+        .must_fail(&["goodness-of-fit", "normalization", "albedo"])
+        // Few points of jacobian may lie in the hole, and the balance heuristic hides
+        // half of it.
+        .may_fail(&["jacobian", "mis"]),
         Mutant::new(
             "cancelling-distribution",
             "torrance-sparrow:alpha=0.001",
