@@ -118,7 +118,7 @@ impl Row {
 /// suite, which stand above its first subject.
 fn suite_of(mutant: &Mutant, sharpness: Sharpness) -> String {
     let text = embedded(sharpness.suite()).expect("the suite comes with gonio").text;
-    let settings = text.split("\n[[subject]]").next().unwrap_or_default();
+    let settings = text.split("[[subject]]").next().unwrap_or_default();
     let mut suite = format!("{settings}[[subject]]\nuse = \"{}\"\n", mutant.model_name());
     if sharpness == Sharpness::Quick {
         suite += &format!("theta = {:?}\n", mutant.shows_at);
