@@ -12,6 +12,11 @@ pub(super) fn mutants() -> Vec<Mutant> {
     [undefined(), out_of_range(), imprecise()].concat()
 }
 
+/// A factor that is NaN where `x` is, and changes nothing elsewhere.
+fn nan_or_one(x: f64) -> f64 {
+    if x.is_nan() { x } else { 1.0 }
+}
+
 /// 0/0 and the like at single inputs.
 fn undefined() -> Vec<Mutant> {
     vec![
@@ -64,8 +69,7 @@ fn undefined() -> Vec<Mutant> {
                 Altered::of(OrenNayar::declared(p)?)
                     .eval_times(|_, wo, wi| {
                         let sines = wo.x.hypot(wo.y) * wi.x.hypot(wi.y);
-                        // sin θo sin θi cos Δφ: what was divided comes back.
-                        sines / sines
+                        nan_or_one((wo.x * wi.x + wo.y * wi.y) / sines)
                     })
                     .made()
             },
@@ -114,8 +118,13 @@ fn undefined() -> Vec<Mutant> {
             "oren-nayar-eon:roughness=0",
             "(1 − E(μo)) (1 − E(μi)) is divided by 1 − E_avg = 0",
             |p, _| {
-                // Both are proportional to the roughness.
-                Altered::of(OrenNayarEon::declared(p)?).eval_times(|m, _, _| m.roughness / m.roughness).made()
+                Altered::of(OrenNayarEon::declared(p)?)
+                    .eval_times(|m, wo, wi| {
+                        // All three are proportional to the roughness.
+                        let lost = |w: Direction| m.roughness * m.lost(w.z.min(1.0));
+                        nan_or_one(lost(wo) * lost(wi) / m.roughness)
+                    })
+                    .made()
             },
         )
         .source("C20-05 Cycles EON 7202f6df4: 0/0 as σ → 0")
@@ -127,10 +136,7 @@ fn undefined() -> Vec<Mutant> {
             "the cosine is not cut at 0 before it is raised to a power",
             |p, _| {
                 Altered::of(Phong::declared(p)?)
-                    .eval_times(|m, wo, wi| {
-                        let power = wo.mirrored().dot(wi).powf(m.exponent);
-                        if power.is_nan() { power } else { 1.0 }
-                    })
+                    .eval_times(|m, wo, wi| nan_or_one(wo.mirrored().dot(wi).powf(m.exponent)))
                     .made()
             },
         )
