@@ -138,7 +138,7 @@ impl Mutant {
         let model = Model::dynamic(self.model_name(), format!("{} [{label}]", self.what), move |p| {
             build(p, if graded { p.number(STRENGTH) } else { 1.0 })
         });
-        let model = model.with_parameters_of(&base, &of.parameters).hidden();
+        let model = model.with_parameters_of(&base, &of.parameters);
         match self.strength {
             Some(s) => model.number(STRENGTH, s.default, 0.0..=s.most, s.meaning).idle(),
             None => model,
@@ -181,6 +181,14 @@ pub fn of_cause(cause: Cause) -> Vec<Mutant> {
 /// Every mutant, by cause.
 pub fn all() -> Vec<Mutant> {
     Cause::ALL.into_iter().flat_map(of_cause).collect()
+}
+
+/// The model of the mutant or control that is called `name`.
+pub fn model(name: &str) -> Option<Model> {
+    // Most names are none of a mutant, and there are many mutants.
+    let is_one = PREFIX.iter().any(|prefix| name.starts_with(prefix));
+    let mut all = all().into_iter().chain(controls()).filter(|_| is_one);
+    all.find(|m| m.model_name() == name).map(|m| m.model())
 }
 
 /// Negative controls: correct code that looks wrong, which must pass.
