@@ -50,17 +50,25 @@ def main() -> None:
     def tell(what: str) -> None:
         print(f"peers: {what}", file=sys.stderr, flush=True)
 
+    def keep() -> None:
+        """After each part, so that a run that is stopped has left something."""
+        (out / "peers.json").write_text(json.dumps(result, indent=1, ensure_ascii=False) + "\n")
+        (out / "peers.md").write_text(markdown(result))
+
     if "cost" in parts:
         tell("CPU time of each configuration")
         result["cost"] = costs(tools, configurations(args.quick), repetitions)
+        keep()
     if "false-alarms" in parts:
         tell("false alarms")
         result["false_alarms"] = false_alarms(tools, configurations(args.quick), seeds)
+        keep()
     if "power" in parts:
         tell("power of ChiSquareTest on the graded bugs")
         calibration = Path(__file__).parents[2] / "reports/calibration/calibration.json"
         result["power"] = mitsubas_power(tools, args.quick, seeds)
         result["gonios_power"] = gonios_power(calibration)
+        keep()
     if "equal-power" in parts:
         tell("samples at equal power, and their CPU time")
         theirs = smallest_alpha(tools, DEFAULT_SAMPLES, seeds)
@@ -72,8 +80,7 @@ def main() -> None:
         }
         result["equal_power"] = {"mitsuba": theirs, "gonio": equal}
         result["target"] = target(tools, headline(), terms, 3 * repetitions)
-    (out / "peers.json").write_text(json.dumps(result, indent=1, ensure_ascii=False) + "\n")
-    (out / "peers.md").write_text(markdown(result))
+        keep()
     print((out / "peers.md").read_text())
 
 

@@ -80,18 +80,33 @@ def smallest_alpha(tools: Tools, samples: int, seeds: int) -> dict[str, Any]:
     return result
 
 
-def gonios_power(calibration: Path) -> dict[str, dict[str, Any]]:
-    """gonio's own figures by bug, if `gonio calibrate` has left any.
+# gonio's mutants of the same bugs; the blend is another one there, phong's diffuse
+# and glossy lobe.
+MUTANTS = {
+    "pdf-scaled": "pdf-scaled",
+    "alpha-off": "pdf-alpha",
+    "g1-missing": "pdf-without-g1",
+    "azimuth-shifted": "azimuth-shifted",
+    "stray-below": "stray-samples",
+    "selection-off": "lobe-share-off",
+}
 
-    Expected of `power` in calibration.json: a list of objects with `bug` (the
-    names of `bugs.py`), `alpha`, `samples`, and the smallest sizes found in
-    95 % of runs, by the ε = 0 statistic (`different`) and by the verdict
-    `fail` with its tolerance (`fail`); null where none was.
+
+def gonios_power(calibration: Path) -> dict[str, dict[str, Any]]:
+    """The figures of gonio and of the fixed grids by bug and α, if `gonio calibrate` has
+    left any: the smallest sizes found in 95 % of runs, by decision; None where not even
+    the largest was.
     """
     if not calibration.exists():
         return {}
-    rows = json.loads(calibration.read_text()).get("power", [])
-    return {f"{row['bug']} {row['alpha']}": row for row in rows if row["samples"] == 1 << 20}
+    power = json.loads(calibration.read_text()).get("power") or {"curves": []}
+    at = {c["mutant"]: c for c in power["curves"] if c["samples"] == 1 << 20}
+    found = {}
+    for bug, mutant in MUTANTS.items():
+        if curve := at.get(f"mutant-{mutant}"):
+            alpha = "0.3" if bug == "g1-missing" else "0.1"
+            found[f"{bug} {alpha}"] = curve["smallest"]
+    return found
 
 
 def equal_power(tools: Tools, size: float, seeds: int) -> dict[str, Any]:

@@ -36,8 +36,8 @@ pub struct Mutant {
     pub cause: Option<Cause>,
     /// The bug in one line.
     pub what: &'static str,
-    /// Where it was found: entries of the catalogue of real bugs, or by whom it is
-    /// made.
+    /// Where it was found: commits and issues of renderers, or whose mistake it is; the
+    /// form that it takes where it is of no one place.
     pub source: &'static str,
     /// The correct model, spelled with the mutant's own defaults.
     pub of: &'static str,

@@ -36,7 +36,7 @@ fn of_densities() -> Vec<Mutant> {
                     .made()
             },
         )
-        .source("C13-01 pbrt-v3@9629f11, C13-02 Mitsuba 3@0a7a0410a")
+        .source("pbrt-v3@9629f11, Mitsuba 3@0a7a0410a")
         .varied(&[("alpha", 0.3, 0.8), ("eta", 1.3, 2.0)])
         .must_fail(PHANTOM),
         Mutant::new(
@@ -49,7 +49,7 @@ fn of_densities() -> Vec<Mutant> {
                     .made()
             },
         )
-        .source("C13-07 tungsten@d008dc6, students: a horizon test in eval() alone")
+        .source("tungsten@d008dc6, students: a horizon test in eval() alone")
         .strength(0.05, 1.0, "mass of pdf below the horizon over that above")
         .varied(&[("alpha", 0.05, 0.9)])
         .must_fail(PHANTOM),
@@ -66,7 +66,7 @@ fn of_densities() -> Vec<Mutant> {
                     .made()
             },
         )
-        .source("C13: phantom mass")
+        .source("phantom mass")
         .strength(0.05, 0.5, "mass of the ring, where all of it is above the horizon")
         .varied(&[("alpha", 0.02, 0.15)])
         .must_fail(PHANTOM),
@@ -90,7 +90,7 @@ fn of_samples() -> Vec<Mutant> {
                     .made()
             },
         )
-        .source("C13-07 tungsten@d008dc6")
+        .source("tungsten@d008dc6")
         .strength(1e-3, 0.1, "share of the samples that fall below the horizon")
         .varied(&[("alpha", 0.05, 0.8)])
         .must_fail(&["support"])
@@ -114,7 +114,7 @@ fn of_samples() -> Vec<Mutant> {
                     .made()
             },
         )
-        .source("C12-05 cycles@6b8f4518a, C06-05 bevy#23442")
+        .source("cycles@6b8f4518a, bevy#23442")
         .varied(&[("alpha", 0.3, 0.9)])
         .shows_at(&[60.0, 75.0])
         // The weight is rightly 0 there, and the means hold.
@@ -145,7 +145,7 @@ fn of_samples() -> Vec<Mutant> {
                     .made()
             },
         )
-        .source("C13-10 student CS184")
+        .source("student CS184")
         .varied(&[("alpha", 0.3, 0.9)])
         .shows_at(&[75.0])
         // The functions agree, on a side to which no light is claimed to leave, and from
@@ -168,7 +168,7 @@ fn of_values() -> Vec<Mutant> {
                     .made()
             },
         )
-        .source("C13 student CS184: no hemisphere test in f")
+        .source("student CS184: no hemisphere test in f")
         .varied(&[("alpha", 0.05, 0.5)])
         // Neither strategy of `mis` goes there.
         .must_fail(&["support", "albedo", "mis", "energy"]),
@@ -185,7 +185,7 @@ fn of_values() -> Vec<Mutant> {
                     .made()
             },
         )
-        .source("C13-05 Mitsuba 3@eb3338383 measured")
+        .source("Mitsuba 3@eb3338383 measured")
         .strength(0.05, 1.0, "light behind over that before the surface")
         .must_fail(&["support", "albedo", "mis", "energy", "white-furnace"]),
         Mutant::new(
@@ -198,7 +198,7 @@ fn of_values() -> Vec<Mutant> {
                     .made()
             },
         )
-        .source("C13-04 Mitsuba 3@2183dd7b1")
+        .source("Mitsuba 3@2183dd7b1")
         .varied(&[("alpha", 0.05, 0.8), ("eta", 1.2, 2.5)])
         // The cosine of `mis` finds what the sampler leaves out.
         .must_fail(&["support", "albedo"]),
