@@ -101,31 +101,15 @@ struct Scope {
 const COMPARED: &[&str] =
     &["pdf-scaled", "pdf-alpha", "pdf-without-g1", "lobe-share-off", "azimuth-shifted", "stray-samples"];
 
-/// The bugs of sample() against pdf().
-const SAMPLING: &[&str] = &[
-    "pdf-scaled",
-    "pdf-alpha",
-    "pdf-without-g1",
-    "lobe-share-off",
-    "azimuth-shifted",
-    "stray-samples",
-    "mirrored-share",
-    "redrawn-below-horizon",
-    "flipped-below-horizon",
-    "eta-squared-in-pdf",
-    "phantom-peak",
-];
-
 /// Exact checks do not see more with more draws, so they are asked for with few.
 const FULL: &[Scope] = &[
-    Scope { exponent: 14, runs: 20, decisions: &[Decision::Any], mutants: &[] },
+    Scope { exponent: 14, runs: 20, decisions: &[Decision::Statistical, Decision::Any], mutants: &[] },
     Scope {
-        exponent: 17,
+        exponent: 20,
         runs: 20,
-        decisions: &[Decision::Strict, Decision::Statistical],
-        mutants: SAMPLING,
+        decisions: &[Decision::Strict, Decision::Statistical, Decision::NoriGrid, Decision::PbrtGrid],
+        mutants: COMPARED,
     },
-    Scope { exponent: 20, runs: 20, decisions: &Decision::ALL, mutants: COMPARED },
 ];
 
 const QUICK: &[Scope] = &[Scope {
