@@ -234,12 +234,12 @@ fn isotropy_fails_where_the_azimuth_matters() {
 }
 
 /// Rounding is allowed for beside the largest value, and no more than that: a base
-/// that is darker than the lobe's peak by 13 orders is still seen to be asymmetric.
+/// that is darker than the lobe's peak by ten orders is still seen to be asymmetric.
 #[test]
 fn a_dark_asymmetry_beside_a_bright_lobe_is_found() {
     struct OverBase(Ggx);
     fn base(wo: Direction, wi: Direction) -> f64 {
-        if wo.z > 0.0 && wi.z > 0.0 { 1e-8 * wo.z } else { 0.0 }
+        if wo.z > 0.0 && wi.z > 0.0 { 1e-5 * wo.z } else { 0.0 }
     }
     impl gonio::bsdf::Bsdf for OverBase {
         fn describe(&self) -> gonio::bsdf::Description {

@@ -51,7 +51,7 @@ pub(super) fn is_tested(k: usize, cases: usize) -> bool {
 }
 
 /// What each recipe says of a measured case, beside others of its subject.
-pub(super) fn of_case(result: &CaseResult, effort: Effort, seed: u64) -> [Option<bool>; 2] {
+pub(super) fn of_case(result: &CaseResult, seed: u64) -> [Option<bool>; 2] {
     let case = &result.case;
     let has = result.evidence.as_ref().map(|e| (e.description.kind, e.description.has));
     if has.is_none_or(|(kind, has)| kind != SubjectKind::Bsdf || !has.pdf || !has.sample) {
@@ -59,7 +59,13 @@ pub(super) fn of_case(result: &CaseResult, effort: Effort, seed: u64) -> [Option
     }
     let level = sidak(RECIPES[0].significance, DIRECTIONS as u32);
     RECIPES.map(|grid| {
-        rejects(&grid, &*case.subject, (case.wo(), case.transport), (effort, level), &key_of(case, seed))
+        rejects(
+            &grid,
+            &*case.subject,
+            (case.wo(), case.transport),
+            (Effort::Full, level),
+            &key_of(case, seed),
+        )
     })
 }
 

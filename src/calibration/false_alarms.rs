@@ -22,12 +22,12 @@ use std::sync::Arc;
 /// thousand runs tell a rate of twice the nominal one for certain.
 pub const RAISED: f64 = 1e-2;
 
-/// Seeds of a full calibration: 30 × 367 cases are more than the ten thousand runs of
+/// Seeds of a full calibration: 28 × 367 cases are more than the ten thousand runs of
 /// which none failing excludes a rate of 3·10⁻⁴.
-const FULL_SEEDS: u64 = 30;
+const FULL_SEEDS: u64 = 28;
 
 /// Seeds of a quick one: 25 s of two cores.
-const QUICK_SEEDS: u64 = 16;
+const QUICK_SEEDS: u64 = 10;
 
 /// Chance, as far as it is known, that the errors of this part call the rates and
 /// p-values of a right instrument wrong; divided by the number of statements.

@@ -9,7 +9,7 @@ use crate::checks::{self, Verdict};
 use crate::engine::{self, CaseResult, Options};
 use crate::mutants::{Mutant, all, controls};
 use crate::registry::Registry;
-use crate::suite::{Overrides, Plan, embedded, load};
+use crate::suite::{Overrides, PHI, Plan, THETA, embedded, load};
 use serde::{Deserialize, Serialize};
 use std::collections::BTreeMap;
 
@@ -160,7 +160,17 @@ impl Plans {
     }
 
     fn of(&self, mutant: &Mutant) -> Plan<'static> {
-        let plan = self.load(mutant.name, &suite_of(mutant, self.effort));
+        let mut plan = self.load(mutant.name, &suite_of(mutant, self.effort));
+        if self.effort == Effort::Full {
+            // Each polar angle once, the azimuths in turn: the suite itself spreads
+            // them over a model's parameters.
+            let place = |all: &[f64], angle: f64| all.iter().position(|a| *a == angle);
+            plan.cases.retain(|case| {
+                let polar = place(&THETA, case.theta_deg.min(180.0 - case.theta_deg));
+                let azimuth = place(&PHI, case.phi_deg);
+                polar.zip(azimuth).is_none_or(|(t, p)| t % PHI.len() == p)
+            });
+        }
         Plan { share: Some(self.share), ..plan }
     }
 }
@@ -186,8 +196,9 @@ impl KillMatrix {
             let one = |k: &usize| {
                 let alone = Plan { cases: vec![plan.cases[*k].clone()], ..plan.clone() };
                 let result = work.run(&alone).cases.remove(0);
-                let grids = match is_tested(*k, cases.len()) {
-                    true => of_case(&result, work.effort, work.seed),
+                // Their recipes take longer than all checks.
+                let grids = match work.effort == Effort::Full && is_tested(*k, cases.len()) {
+                    true => of_case(&result, work.seed),
                     false => [None; 2],
                 };
                 (result, grids)

@@ -23,7 +23,7 @@ pub fn list(args: &ListArgs, registry: &Registry) -> Result<Exit, CliError> {
     let text = match &args.name {
         None if args.mutants => mutants(),
         None => subjects(registry),
-        Some(name) => parameters(registry.model(name)?),
+        Some(name) => parameters(registry.model(name)?.as_ref()),
     };
     emit(&text)?;
     Ok(Exit::Passed)

@@ -30,17 +30,6 @@ impl Setup {
         }
     }
 
-    /// How far apart rounding may leave two values that are small beside their terms,
-    /// which are as large as 1: 16 units. Rough glass with the textbook's 1 − F was
-    /// seen to differ by up to 5 units between both ways along a path, where these
-    /// were more than [`tolerance`](Self::tolerance).
-    pub fn rounding(&self) -> f64 {
-        16.0 * match self.precision {
-            Precision::F64 => f64::EPSILON,
-            Precision::F32 => f64::from(f32::EPSILON),
-        }
-    }
-
     /// Values below this count as zero where they are compared.
     pub fn floor(&self) -> f64 {
         match self.precision {

@@ -39,14 +39,14 @@ fn conventions() -> Vec<Mutant> {
                     .made()
             },
         )
-        .source("§6: weight = eval/pdf where eval contains the cosine"),
+        .source("weight = eval/pdf where eval contains the cosine"),
         Mutant::new(
             "cosine-undeclared",
             "torrance-sparrow:alpha=0.3",
             "eval() contains the cosine and does not say so: a convention",
             |p, _| with_cosine(TorranceSparrow::declared(p)?).made(),
         )
-        .source("§6: detect the convention first")
+        .source("detect the convention first")
         .must_warn(&["weight"]),
         Mutant::new(
             "importance",
@@ -59,7 +59,7 @@ fn conventions() -> Vec<Mutant> {
                     .made()
             },
         )
-        .source("C07-07 pbrt-v3#108: η_o² or η_i² by the mode of transport"),
+        .source("pbrt-v3#108: η_o² or η_i² by the mode of transport"),
         Mutant::new(
             "off-support-returned",
             "torrance-sparrow:alpha=0.5",
@@ -91,7 +91,7 @@ fn conventions() -> Vec<Mutant> {
                     .made()
             },
         )
-        .source("§6: what becomes of draws off the support is a convention"),
+        .source("what becomes of draws off the support is a convention"),
     ]
 }
 
@@ -114,7 +114,7 @@ fn samplers() -> Vec<Mutant> {
                 with_u(TorranceSparrow::declared(p)?, reversed).made()
             },
         )
-        .source("C26-03 pbrt-v3@3123d85: a sign that comes to u → 1 − u"),
+        .source("pbrt-v3@3123d85: a sign that comes to u → 1 − u"),
         Mutant::new(
             "permuted-strata",
             "torrance-sparrow:alpha=0.3",
@@ -127,7 +127,7 @@ fn samplers() -> Vec<Mutant> {
                 with_u(TorranceSparrow::declared(p)?, permuted).made()
             },
         )
-        .source("C26-03: the same density from another map"),
+        .source("the same density from another map"),
         Mutant::new(
             "concentric-disc",
             "lambert:reflectance=1",
@@ -148,7 +148,7 @@ fn samplers() -> Vec<Mutant> {
                     .made()
             },
         )
-        .source("§6: albedo exactly 1 with zero variance"),
+        .source("albedo exactly 1 with zero variance"),
     ]
 }
 
@@ -161,7 +161,7 @@ fn choices() -> Vec<Mutant> {
             "the diffuse lobe, of nearly half of the light, is drawn once in ten times",
             |p, _| Ok(Arc::new(Phong { shares: [0.1, 0.9], ..Phong::declared(p)? })),
         )
-        .source("C26: only efficiency is lost"),
+        .source("only efficiency is lost"),
         Mutant::new(
             "samples-of-another-roughness",
             "torrance-sparrow:alpha=0.2",
@@ -175,7 +175,7 @@ fn choices() -> Vec<Mutant> {
                     .made()
             },
         )
-        .source("§6: a consistent wrong density in sample and pdf"),
+        .source("a consistent wrong density in sample and pdf"),
         Mutant::new(
             "lobe-narrowed",
             "phong",
@@ -191,7 +191,7 @@ fn choices() -> Vec<Mutant> {
                     .made()
             },
         )
-        .source("C26-02 Mitsuba 0.x 3b1f6dc2: a lobe enlarged the wrong way, in sample and pdf"),
+        .source("Mitsuba 0.x 3b1f6dc2: a lobe enlarged the wrong way, in sample and pdf"),
         Mutant::new(
             "choice-clamped",
             "rough-plastic:alpha=0.1",
@@ -222,7 +222,7 @@ fn choices() -> Vec<Mutant> {
                     .made()
             },
         )
-        .source("§6: a defensive clamp of P in both"),
+        .source("a defensive clamp of P in both"),
     ]
 }
 
@@ -240,7 +240,7 @@ fn models() -> Vec<Mutant> {
                     .made()
             },
         )
-        .source("§6: F(wi·h) with consistent η equals F(wo·h)"),
+        .source("F(wi·h) with consistent η equals F(wo·h)"),
         Mutant::new(
             "fresnel-from-beyond",
             "fresnel",
@@ -256,7 +256,7 @@ fn models() -> Vec<Mutant> {
                     .made()
             },
         )
-        .source("C26-01 pbrt-v2 e2140b4: exchanged indices are exchanged again"),
+        .source("pbrt-v2 e2140b4: exchanged indices are exchanged again"),
         Mutant::new(
             "textbook-transmittance",
             "rough-dielectric:alpha=0.3",
@@ -306,7 +306,7 @@ fn models() -> Vec<Mutant> {
                     .made()
             },
         )
-        .source("§6: OpenPBR PR 30 trades reciprocity for energy"),
+        .source("OpenPBR PR 30 trades reciprocity for energy"),
         Mutant::new(
             "floor-of-alpha",
             "torrance-sparrow:alpha=0.01",
@@ -316,7 +316,7 @@ fn models() -> Vec<Mutant> {
                 Ok(Arc::new(TorranceSparrow::declared(&with(p, "alpha", alpha))?))
             },
         )
-        .source("§6: α floor 1e-3"),
+        .source("α floor 1e-3"),
         Mutant::new(
             "both-sides-mirrored",
             "torrance-sparrow:alpha=0.3,alpha_y=0.1",
@@ -333,6 +333,6 @@ fn models() -> Vec<Mutant> {
                     .made()
             },
         )
-        .source("C14: z → −z and not w → −w"),
+        .source("z → −z and not w → −w"),
     ]
 }

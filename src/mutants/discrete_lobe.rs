@@ -26,7 +26,7 @@ fn of_flags() -> Vec<Mutant> {
                     .made()
             },
         )
-        .source("C10-08 student Nori microfacet")
+        .source("student Nori microfacet")
         .varied(&[("alpha", 0.1, 0.5)])
         // Nothing continuous is drawn where pdf has mass, and each direction is a lobe
         // of its own, with a density for its probability.
@@ -50,7 +50,7 @@ fn of_flags() -> Vec<Mutant> {
                     .made()
             },
         )
-        .source("C22-04 pbrt-v4@765ce358")
+        .source("pbrt-v4@765ce358")
         .must_fail(&["discrete-lobes", "normalization", "support", "albedo", "mis"])
         // There is no cell with pdf to count in.
         .may_fail(&["goodness-of-fit"]),
@@ -64,7 +64,7 @@ fn of_flags() -> Vec<Mutant> {
                     .made()
             },
         )
-        .source("C22-05 rs_pbrt@153b0ea")
+        .source("rs_pbrt@153b0ea")
         // No light and no continuous sample come that could have a wrong weight.
         .must_fail(&["goodness-of-fit", "normalization", "support"]),
         Mutant::new(
@@ -75,7 +75,7 @@ fn of_flags() -> Vec<Mutant> {
                 Altered::of(Plastic::declared(p)?).pdf_times(|m, wo, wi| wi.z / PI / m.pdf(wo, wi, R)).made()
             },
         )
-        .source("C22-02 tungsten@66bda36: discrete and continuous lobes mixed")
+        .source("tungsten@66bda36: discrete and continuous lobes mixed")
         .varied(&[("reflectance", 0.05, 0.8), ("eta", 1.3, 2.5)])
         .must_fail(&["goodness-of-fit", "normalization", "albedo", "mis"]),
         Mutant::new(
@@ -94,7 +94,7 @@ fn of_flags() -> Vec<Mutant> {
                     .made()
             },
         )
-        .source("C22-02 tungsten@66bda36, C13-08 GLSL-PathTracer#96")
+        .source("tungsten@66bda36, GLSL-PathTracer#96")
         .varied(&[("reflectance", 0.05, 0.3), ("eta", 1.5, 2.5)])
         .shows_at(&[75.0])
         .must_fail(&["discrete-lobes"]),
@@ -115,7 +115,7 @@ fn of_flags() -> Vec<Mutant> {
                     .made()
             },
         )
-        .source("C22-01 LuxCore@0e3b8addd mix")
+        .source("LuxCore@0e3b8addd mix")
         .varied(&[("reflectance", 0.1, 0.9), ("eta", 1.3, 2.5)])
         .must_fail(&["discrete-lobes", "albedo", "mis"]),
     ]
@@ -137,10 +137,12 @@ fn of_lobes() -> Vec<Mutant> {
                     .made()
             },
         )
-        .source("C22: a density told for a probability")
+        .source("a density told for a probability")
         .strength(0.1, 0.5, "the told probability is 1 + epsilon times too large")
         .varied(&[("reflectance", 0.1, 0.9), ("eta", 1.3, 2.0)])
-        .must_fail(&["discrete-lobes", "albedo", "mis"]),
+        .must_fail(&["discrete-lobes", "albedo", "mis"])
+        // Near grazing the mirror has nearly all light, and more than that is told.
+        .may_fail(&["energy"]),
         Mutant::new(
             "mirror-not-divided-by-probability",
             "plastic:reflectance=1",
@@ -154,7 +156,7 @@ fn of_lobes() -> Vec<Mutant> {
                     .made()
             },
         )
-        .source("C22: a discrete lobe's value for its weight")
+        .source("a discrete lobe's value for its weight")
         .varied(&[("eta", 1.2, 2.5)])
         // Whatever the weight, it is what the lobe gives: only flux is missing.
         .must_fail(&["white-furnace"]),
@@ -168,7 +170,7 @@ fn of_lobes() -> Vec<Mutant> {
                     .made()
             },
         )
-        .source("C22-07 tungsten@66b1d7a")
+        .source("tungsten@66b1d7a")
         .varied(&[("eta", 1.2, 2.5)])
         .must_fail(&["white-furnace"]),
         Mutant::new(
@@ -181,7 +183,7 @@ fn of_lobes() -> Vec<Mutant> {
                     .made()
             },
         )
-        .source("C22: a mirror direction slightly off")
+        .source("a mirror direction slightly off")
         .strength(1e-3, 0.1, "radians")
         .must_fail(&["discrete-lobes", "reciprocity"]),
         Mutant::new(
@@ -199,7 +201,7 @@ fn of_lobes() -> Vec<Mutant> {
                     .made()
             },
         )
-        .source("C22: a refracted direction by a wrong Snell's law")
+        .source("a refracted direction by a wrong Snell's law")
         .varied(&[("eta", 1.1, 2.5)])
         .must_fail(&["discrete-lobes", "reciprocity"]),
     ]

@@ -19,7 +19,7 @@ pub(super) fn mutants() -> Vec<Mutant> {
                     .made()
             },
         )
-        .source("C08-02 specular-manifold-sampling#3")
+        .source("specular-manifold-sampling#3")
         .varied(&[("alpha", 0.1, 0.5), ("eta", 1.3, 2.0)])
         // Also where facets refract by 1/η and not by η there is light, and no pdf.
         .must_fail(&["goodness-of-fit", "normalization", "support", "albedo", "mis", "jacobian"]),
@@ -36,7 +36,7 @@ pub(super) fn mutants() -> Vec<Mutant> {
                     .made()
             },
         )
-        .source("C08-02 specular-manifold-sampling#3")
+        .source("specular-manifold-sampling#3")
         .varied(&[("alpha", 0.02, 0.15), ("eta", 1.3, 2.0)])
         // The lobe is elsewhere, for α → 0 too.
         .must_fail(&[
@@ -58,7 +58,7 @@ pub(super) fn mutants() -> Vec<Mutant> {
                     .made()
             },
         )
-        .source("C08-02 specular-manifold-sampling#3")
+        .source("specular-manifold-sampling#3")
         .varied(&[("alpha", 0.1, 0.5), ("eta", 1.3, 2.0)])
         // What is seen through facets that are not drawn is missed by sampling, and
         // made up for by the cosine of `mis`.
@@ -76,7 +76,7 @@ pub(super) fn mutants() -> Vec<Mutant> {
                     .made()
             },
         )
-        .source("C08-04 cycles@081aa191b, cycles@e3b4722e7")
+        .source("cycles@081aa191b, cycles@e3b4722e7")
         .varied(&[("eta", 1.1, 2.5)])
         .shows_at(&[75.0])
         .must_fail(&["sanity"])
@@ -97,7 +97,7 @@ pub(super) fn mutants() -> Vec<Mutant> {
                     .made()
             },
         )
-        .source("C08-04 cycles@081aa191b, cycles@e3b4722e7")
+        .source("cycles@081aa191b, cycles@e3b4722e7")
         .varied(&[("alpha", 0.05, 0.5), ("eta", 1.3, 2.0)])
         // For α → 0 nothing is left of the reflection that samples should gather in.
         .must_fail(&[
@@ -128,7 +128,7 @@ pub(super) fn mutants() -> Vec<Mutant> {
                     .made()
             },
         )
-        .source("C08-01 pbrt-v3@478b2e6, pbrt-v3#214")
+        .source("pbrt-v3@478b2e6, pbrt-v3#214")
         .varied(&[("eta", 1.2, 2.5)])
         .shows_at(&[30.0, 75.0])
         // Below the critical angle the two lobes still share all light.
@@ -143,7 +143,7 @@ pub(super) fn mutants() -> Vec<Mutant> {
                     .made()
             },
         )
-        .source("C08-01 pbrt-v3@478b2e6, pbrt-v3#254")
+        .source("pbrt-v3@478b2e6, pbrt-v3#254")
         .varied(&[("eta", 1.1, 3.0)])
         .must_fail(&["fresnel"]),
         Mutant::new(
@@ -165,7 +165,7 @@ pub(super) fn mutants() -> Vec<Mutant> {
                     .made()
             },
         )
-        .source("C08-05 pbrt-v4@e86038eb, the other way round")
+        .source("pbrt-v4@e86038eb, the other way round")
         .varied(&[("alpha", 0.05, 0.8)])
         .compared()
         .must_fail(&["reference"]),

@@ -36,7 +36,7 @@ pub(super) fn mutants() -> Vec<Mutant> {
                     .made()
             },
         )
-        .source("C14-02 Mitsuba 3 twosided")
+        .source("Mitsuba 3 twosided")
         .varied(&[("alpha", 0.1, 0.5), ("eta", 1.3, 2.0)])
         // Reciprocity compares transmission with that from the front.
         .must_fail(&["goodness-of-fit", "albedo", "mis", "jacobian", "reciprocity"])
@@ -47,7 +47,7 @@ pub(super) fn mutants() -> Vec<Mutant> {
                 .eval(|m, wo, wi, transport| m.eval(wo, Direction::new(wi.x, -wi.y, wi.z), transport))
                 .made()
         })
-        .source("C14-10 IrrlichtBAW")
+        .source("IrrlichtBAW")
         .shows_at(&[60.0])
         .varied(&[("sigma", 10.0, 60.0), ("reflectance", 0.3, 0.8)])
         // The sum is symmetric too, and integrates to the same.
@@ -86,7 +86,7 @@ pub(super) fn mutants() -> Vec<Mutant> {
                     .made()
             },
         )
-        .source("§1.5: a frame built in the wrong basis, invisible at φ = 0")
+        .source("a frame built in the wrong basis, invisible at φ = 0")
         .shows_at(&[75.0])
         .varied(&[("roughness", 0.5, 1.0), ("reflectance", 0.3, 1.0)])
         .must_fail(&["goodness-of-fit", "jacobian"])
@@ -102,7 +102,7 @@ pub(super) fn mutants() -> Vec<Mutant> {
                     .made()
             },
         )
-        .source("C14-04 pbrt-v3 rho(); C14-05 dspbr-pt")
+        .source("pbrt-v3 rho(); dspbr-pt")
         .shows_at(&[30.0])
         .varied(&[("sigma", 10.0, 60.0), ("reflectance", 0.3, 0.8)])
         .must_fail(&["isotropy", "reciprocity"]),
@@ -121,7 +121,7 @@ pub(super) fn mutants() -> Vec<Mutant> {
                     .made()
             },
         )
-        .source("C14-08 GLSL-PathTracer: a tangent that depends on what it must not")
+        .source("GLSL-PathTracer: a tangent that depends on what it must not")
         .varied(&[("alpha", 0.3, 0.8), ("alpha_y", 0.05, 0.2)])
         // The functions agree with each other.
         .must_fail(&["reciprocity"]),

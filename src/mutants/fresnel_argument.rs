@@ -29,7 +29,7 @@ fn of_surfaces() -> Vec<Mutant> {
                     .made()
             },
         )
-        .source("C17-01: the macroscopic normal's angle")
+        .source("the macroscopic normal's angle")
         .strength(1.0, 1.0, "share of n·wo in the cosine")
         .varied(&[("alpha", 0.1, 0.8), ("eta", 1.2, 2.5)])
         .must_fail(&["reciprocity"]),
@@ -45,7 +45,7 @@ fn of_surfaces() -> Vec<Mutant> {
                     .made()
             },
         )
-        .source("C17-01 CS184 handout and students")
+        .source("CS184 handout and students")
         .varied(&[("alpha", 0.1, 0.8), ("f0", 0.01, 0.5)])
         .must_fail(&["reciprocity"]),
         Mutant::new(
@@ -62,7 +62,7 @@ fn of_surfaces() -> Vec<Mutant> {
                     .made()
             },
         )
-        .source("C17-04 glTF#2022")
+        .source("glTF#2022")
         .strength(1.0, 2.0, "exponent of 1 − F beyond the right one")
         .varied(&[("eta", 1.2, 2.5)])
         .must_fail(&["white-furnace"]),
@@ -79,7 +79,7 @@ fn of_surfaces() -> Vec<Mutant> {
                     .made()
             },
         )
-        .source("C17-05 MaterialX@67d2e2836: transmittance of a layer")
+        .source("MaterialX@67d2e2836: transmittance of a layer")
         .varied(&[("alpha", 0.05, 0.8), ("eta", 1.3, 2.5)])
         .must_fail(&["reciprocity", "energy", "white-furnace"]),
         Mutant::new(
@@ -97,7 +97,7 @@ fn of_surfaces() -> Vec<Mutant> {
                     .made()
             },
         )
-        .source("C17-02 student CS184")
+        .source("student CS184")
         .varied(&[("eta", 1.2, 2.5)])
         .shows_at(&[60.0])
         .must_fail(&["energy", "white-furnace"]),
@@ -112,7 +112,7 @@ fn of_functions() -> Vec<Mutant> {
                 .reflectance(|f, cos| f.polarised(cos).map_or_else(|| f.reflectance(cos), |[s, _]| s))
                 .made()
         })
-        .source("C17-02 student CS184")
+        .source("student CS184")
         .varied(&[("eta", 1.1, 3.0)])
         .must_fail(&["fresnel"]),
         Mutant::new(
@@ -125,7 +125,7 @@ fn of_functions() -> Vec<Mutant> {
                     .made()
             },
         )
-        .source("C17: a wrong cosine")
+        .source("a wrong cosine")
         .varied(&[("eta", 1.1, 3.0)])
         .must_fail(&["fresnel"]),
         Mutant::new("polarisations-exchanged", "fresnel", "Rs is called Rp, and Rp Rs", |p, _| {
@@ -133,7 +133,7 @@ fn of_functions() -> Vec<Mutant> {
                 .polarised(|f, cos| f.polarised(cos).map(|[s, p]| [p, s]))
                 .made()
         })
-        .source("C17: s and p exchanged")
+        .source("s and p exchanged")
         .varied(&[("eta", 1.1, 3.0)])
         .must_fail(&["fresnel"]),
         Mutant::new(
@@ -149,7 +149,7 @@ fn of_functions() -> Vec<Mutant> {
                     .made()
             },
         )
-        .source("C17: the sign of the cosine")
+        .source("the sign of the cosine")
         .varied(&[("f0", 0.0, 0.9)])
         .must_fail(&["fresnel"]),
         Mutant::new(
@@ -165,7 +165,7 @@ fn of_functions() -> Vec<Mutant> {
                     .made()
             },
         )
-        .source("C24 students: a wrong symbol")
+        .source("students: a wrong symbol")
         .varied(&[("f0", 0.0, 0.9)])
         // An approximation need not be this one.
         .compared()

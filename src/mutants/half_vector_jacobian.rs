@@ -19,7 +19,7 @@ pub(super) fn mutants() -> Vec<Mutant> {
         Mutant::new("no-jacobian", "torrance-sparrow:alpha=0.5", "pdf() lacks 1/(4 wo·h)", |p, _| {
             Altered::of(TorranceSparrow::declared(p)?).pdf_times(|_, wo, wi| 4.0 * cosine(wo, wi)).made()
         })
-        .source("C02-01 student Nori microfacet")
+        .source("student Nori microfacet")
         .varied(&[("alpha", 0.05, 0.8)])
         .must_fail(ALL),
         Mutant::new(
@@ -28,7 +28,7 @@ pub(super) fn mutants() -> Vec<Mutant> {
             "pdf() has 1/4 where 1/(4 wo·h) must be",
             |p, _| Altered::of(TorranceSparrow::declared(p)?).pdf_times(|_, wo, wi| cosine(wo, wi)).made(),
         )
-        .source("C02: of the wrong vector or in part")
+        .source("of the wrong vector or in part")
         .varied(&[("alpha", 0.05, 0.8)])
         .must_fail(ALL),
         Mutant::new(
@@ -37,7 +37,7 @@ pub(super) fn mutants() -> Vec<Mutant> {
             "pdf() is divided by 4 wo·h twice",
             |p, _| Altered::of(Ward::declared(p)?).pdf_times(|_, wo, wi| 0.25 / cosine(wo, wi)).made(),
         )
-        .source("C02: a reflection that divides the pdf of a distribution which has done so")
+        .source("a reflection that divides the pdf of a distribution which has done so")
         .varied(&[("alpha", 0.1, 0.6)])
         .must_fail(ALL),
         Mutant::new(
@@ -50,7 +50,7 @@ pub(super) fn mutants() -> Vec<Mutant> {
                     .made()
             },
         )
-        .source("C02: of the wrong vector")
+        .source("of the wrong vector")
         .varied(&[("alpha", 0.05, 0.8)])
         .must_fail(ALL),
         Mutant::new(
@@ -67,7 +67,7 @@ pub(super) fn mutants() -> Vec<Mutant> {
                     .made()
             },
         )
-        .source("C02-02 student Nori microfacet with two lobes")
+        .source("student Nori microfacet with two lobes")
         .varied(&[("alpha", 0.1, 0.6)])
         .must_fail(&["goodness-of-fit", "normalization", "albedo", "mis"])
         // Lobes overlap: only a pdf below the coat's part is seen, where wo·h < 1/4.

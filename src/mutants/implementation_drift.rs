@@ -31,7 +31,7 @@ pub(super) fn mutants() -> Vec<Mutant> {
                     .made()
             },
         )
-        .source("C16-01 appleseed: F of a normal that is out of date")
+        .source("appleseed: F of a normal that is out of date")
         .shows_at(&[75.0])
         .varied(&[("alpha", 0.2, 0.8), ("eta", 1.3, 2.0)])
         .must_fail(&["weight", "albedo", "mis"]),
@@ -66,7 +66,7 @@ pub(super) fn mutants() -> Vec<Mutant> {
                 Altered::of(m).draw(draws_of(rough)).made()
             },
         )
-        .source("C23-05 Mitsuba 0.x: a least α, in one function")
+        .source("Mitsuba 0.x: a least α, in one function")
         .varied(&[("alpha", 0.005, 0.02)])
         .must_fail(&["goodness-of-fit", "mis", "jacobian", "sensitivity"])
         // Weights are nearly equal everywhere, little is below the horizon, and at the peak
@@ -83,7 +83,7 @@ pub(super) fn mutants() -> Vec<Mutant> {
                     .made()
             },
         )
-        .source("C23-02 Cycles GGX D in f32")
+        .source("Cycles GGX D in f32")
         .varied(&[("alpha", 0.008, 0.03)])
         .must_fail(&["weight", "returned-pdf"])
         // Off by 0.15 % at places; masses of cells by less than is tolerated.
@@ -98,7 +98,7 @@ pub(super) fn mutants() -> Vec<Mutant> {
                 Altered::of(m).sample(move |_, wo, u, transport| rougher.sample(wo, u, transport)).made()
             },
         )
-        .source("C15-08 Selas: another roughness in sample()")
+        .source("Selas: another roughness in sample()")
         .strength(0.1, 1.0, "alpha is 1 + epsilon times too large in sample")
         .varied(&[("alpha", 0.05, 0.5)])
         .must_fail(&["goodness-of-fit", "weight", "returned-pdf", "jacobian"])

@@ -29,7 +29,7 @@ pub(super) fn mutants() -> Vec<Mutant> {
                     .made()
             },
         )
-        .source("C09-08 three-gpu-pathtracer: shares from different arguments in sample() and eval()")
+        .source("three-gpu-pathtracer: shares from different arguments in sample() and eval()")
         .strength(0.1, 0.4, "the share of the first lobe is 1 + epsilon times too large in pdf")
         .varied(&[("kd", 0.25, 0.5), ("ks", 0.3, 0.5), ("exponent", 10.0, 100.0)])
         // At its peak the glossy lobe alone is more than pdf.
@@ -42,7 +42,7 @@ pub(super) fn mutants() -> Vec<Mutant> {
             let lobes = lobes_of(&m);
             Altered::of(m).pdf(move |_, wo, wi| lobes.iter().map(|l| l.pdf(wo, wi, R)).sum()).made()
         })
-        .source("C09-04 dspbr-pt")
+        .source("dspbr-pt")
         .varied(&[("kd", 0.2, 0.5), ("ks", 0.2, 0.5), ("exponent", 5.0, 100.0)])
         .must_fail(&["goodness-of-fit", "normalization", "albedo", "mis"]),
         Mutant::new(
@@ -58,7 +58,7 @@ pub(super) fn mutants() -> Vec<Mutant> {
                     .made()
             },
         )
-        .source("§4 one lobe folded")
+        .source("one lobe folded")
         .shows_at(&[75.0])
         .varied(&[("alpha", 0.1, 0.6), ("reflectance", 0.3, 0.8)])
         .must_fail(&["goodness-of-fit", "normalization", "albedo", "mis"]),
@@ -76,7 +76,7 @@ pub(super) fn mutants() -> Vec<Mutant> {
                     .made()
             },
         )
-        .source("C09-05 LuisaRender glass")
+        .source("LuisaRender glass")
         .varied(&[("alpha", 0.1, 0.6), ("reflectance", 0.2, 0.8)])
         .must_fail(&["goodness-of-fit", "normalization", "albedo", "mis", "jacobian"]),
         Mutant::new(
@@ -97,7 +97,7 @@ pub(super) fn mutants() -> Vec<Mutant> {
                     .made()
             },
         )
-        .source("C09-01 Mitsuba 3 blendbsdf")
+        .source("Mitsuba 3 blendbsdf")
         .varied(&[("kd", 0.2, 0.5), ("ks", 0.2, 0.5), ("exponent", 5.0, 100.0)])
         // Right on average, so that albedo holds.
         .must_fail(&["weight", "returned-pdf", "mis"]),
@@ -115,7 +115,7 @@ pub(super) fn mutants() -> Vec<Mutant> {
                     .made()
             },
         )
-        .source("C09-11 Cycles")
+        .source("Cycles")
         .shows_at(&[30.0])
         .varied(&[("alpha", 0.02, 0.08), ("eta", 1.3, 1.5)])
         .must_fail(&["goodness-of-fit", "jacobian"])
@@ -139,7 +139,7 @@ pub(super) fn mutants() -> Vec<Mutant> {
                     .made()
             },
         )
-        .source("C09-20 dspbr-pt and others: lobes with f > 0 and a share of 0")
+        .source("dspbr-pt and others: lobes with f > 0 and a share of 0")
         .varied(&[("alpha", 0.1, 0.6), ("eta", 1.2, 2.0)])
         // The cosine finds what the sampler does not, so that mis holds.
         .must_fail(&["support", "albedo"]),
@@ -156,7 +156,7 @@ pub(super) fn mutants() -> Vec<Mutant> {
                     .made()
             },
         )
-        .source("C09-10 pbrt-v3 Disney: R or T by another probability than pdf's")
+        .source("pbrt-v3 Disney: R or T by another probability than pdf's")
         .varied(&[("alpha", 0.05, 0.6), ("eta", 1.2, 2.0)])
         .must_fail(&["goodness-of-fit", "albedo", "mis", "jacobian"])
         // Only by what falls off the support differently in reflection and transmission.
@@ -171,7 +171,7 @@ pub(super) fn mutants() -> Vec<Mutant> {
                     .made()
             },
         )
-        .source("C15-05 Mitsuba 3 mask: the chance of another event is not in pdf")
+        .source("Mitsuba 3 mask: the chance of another event is not in pdf")
         .varied(&[("eta", 1.3, 2.0), ("reflectance", 0.2, 0.9)])
         .must_fail(&["goodness-of-fit", "normalization", "albedo", "mis"]),
     ]

@@ -32,4 +32,4 @@ mod weight;
 mod wrong_density;
 mod wrong_measure;
 
-pub use mutant::{Mutant, STRENGTH, Strength, all, controls, of_cause};
+pub use mutant::{Mutant, STRENGTH, Strength, all, controls, model, of_cause};

@@ -36,8 +36,8 @@ pub struct Mutant {
     pub cause: Option<Cause>,
     /// The bug in one line.
     pub what: &'static str,
-    /// Where it was found: entries of the catalogue of real bugs, or by whom it is
-    /// made.
+    /// Where it was found: commits and issues of renderers, or whose mistake it is; the
+    /// form that it takes where it is of no one place.
     pub source: &'static str,
     /// The correct model, spelled with the mutant's own defaults.
     pub of: &'static str,
@@ -138,7 +138,7 @@ impl Mutant {
         let model = Model::dynamic(self.model_name(), format!("{} [{label}]", self.what), move |p| {
             build(p, if graded { p.number(STRENGTH) } else { 1.0 })
         });
-        let model = model.with_parameters_of(&base, &of.parameters).hidden();
+        let model = model.with_parameters_of(&base, &of.parameters);
         match self.strength {
             Some(s) => model.number(STRENGTH, s.default, 0.0..=s.most, s.meaning).idle(),
             None => model,
@@ -151,29 +151,29 @@ pub fn of_cause(cause: Cause) -> Vec<Mutant> {
     let mutants = match cause {
         Cause::ConstantFactor => super::constant_factor::mutants(),
         Cause::HalfVectorJacobian => super::half_vector_jacobian::mutants(),
-        Cause::EnergyCompensation => super::energy_compensation::mutants(),
-        Cause::Normalization => super::normalization::mutants(),
-        Cause::Numerics => super::numerics::mutants(),
-        Cause::Parameter => super::parameter::mutants(),
-        Cause::Table => super::table::mutants(),
+        Cause::NdfMeasure => super::ndf_measure::mutants(),
+        Cause::SwappedArguments => super::swapped_arguments::mutants(),
+        Cause::WrongMeasure => super::wrong_measure::mutants(),
+        Cause::NdfVndfMismatch => super::ndf_vndf_mismatch::mutants(),
         Cause::RefractionJacobian => super::refraction_jacobian::mutants(),
         Cause::EtaSide => super::eta_side::mutants(),
-        Cause::Support => super::support::mutants(),
-        Cause::FresnelArgument => super::fresnel_argument::mutants(),
-        Cause::TransportMode => super::transport_mode::mutants(),
-        Cause::DiscreteLobe => super::discrete_lobe::mutants(),
-        Cause::Masking => super::masking::mutants(),
-        Cause::NdfMeasure => super::ndf_measure::mutants(),
-        Cause::NdfVndfMismatch => super::ndf_vndf_mismatch::mutants(),
-        Cause::SwappedArguments => super::swapped_arguments::mutants(),
-        Cause::UnnormalizedRejection => super::unnormalized_rejection::mutants(),
-        Cause::WrongMeasure => super::wrong_measure::mutants(),
         Cause::LobeProbability => super::lobe_probability::mutants(),
         Cause::RandomNumberReuse => super::random_number_reuse::mutants(),
         Cause::WrongDensity => super::wrong_density::mutants(),
+        Cause::UnnormalizedRejection => super::unnormalized_rejection::mutants(),
+        Cause::Support => super::support::mutants(),
         Cause::Frame => super::frame::mutants(),
         Cause::Weight => super::weight::mutants(),
         Cause::ImplementationDrift => super::implementation_drift::mutants(),
+        Cause::FresnelArgument => super::fresnel_argument::mutants(),
+        Cause::Masking => super::masking::mutants(),
+        Cause::Normalization => super::normalization::mutants(),
+        Cause::EnergyCompensation => super::energy_compensation::mutants(),
+        Cause::TransportMode => super::transport_mode::mutants(),
+        Cause::DiscreteLobe => super::discrete_lobe::mutants(),
+        Cause::Numerics => super::numerics::mutants(),
+        Cause::Parameter => super::parameter::mutants(),
+        Cause::Table => super::table::mutants(),
     };
     mutants.into_iter().map(|m| Mutant { cause: Some(cause), ..m }).collect()
 }
@@ -181,6 +181,14 @@ pub fn of_cause(cause: Cause) -> Vec<Mutant> {
 /// Every mutant, by cause.
 pub fn all() -> Vec<Mutant> {
     Cause::ALL.into_iter().flat_map(of_cause).collect()
+}
+
+/// The model of the mutant or control that is called `name`.
+pub fn model(name: &str) -> Option<Model> {
+    // Most names are none of a mutant, and there are many mutants.
+    let is_one = PREFIX.iter().any(|prefix| name.starts_with(prefix));
+    let mut all = all().into_iter().chain(controls()).filter(|_| is_one);
+    all.find(|m| m.model_name() == name).map(|m| m.model())
 }
 
 /// Negative controls: correct code that looks wrong, which must pass.

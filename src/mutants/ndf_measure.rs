@@ -17,7 +17,7 @@ pub(super) fn mutants() -> Vec<Mutant> {
                 Altered::of(TorranceSparrow::declared(p)?).pdf_times(|_, wo, wi| 1.0 / half(wo, wi).z).made()
             },
         )
-        .source("C03: D used as a pdf")
+        .source("D used as a pdf")
         .varied(&[("alpha", 0.3, 0.8)])
         .must_fail(&["goodness-of-fit", "normalization", "albedo", "mis", "jacobian"]),
         // jacobian bounds the pdf of overlapping lobes from below, and this is more.
@@ -35,7 +35,7 @@ pub(super) fn mutants() -> Vec<Mutant> {
                     .made()
             },
         )
-        .source("C03-01 pbrt-v3 DisneyClearcoat, pbrt-v3@277d749")
+        .source("pbrt-v3 DisneyClearcoat, pbrt-v3@277d749")
         .varied(&[("clearcoat", 0.5, 1.0)])
         .must_fail(&["goodness-of-fit", "normalization", "albedo"])
         // The cosine draws much of the lobe's tail, where the error is: 1.5 % are left.
@@ -47,7 +47,7 @@ pub(super) fn mutants() -> Vec<Mutant> {
             "eval() has D cos θh where D must be",
             |p, _| Altered::of(TorranceSparrow::declared(p)?).eval_times(|_, wo, wi| half(wo, wi).z).made(),
         )
-        .source("C03-02 student Nori microfacet: squareToBeckmannPdf used as D")
+        .source("student Nori microfacet: squareToBeckmannPdf used as D")
         .varied(&[("alpha", 0.2, 1.0)])
         .must_fail(&["reference"])
         .compared(),
@@ -64,7 +64,7 @@ pub(super) fn mutants() -> Vec<Mutant> {
                     .made()
             },
         )
-        .source("C03-02 student Nori microfacet: squareToBeckmannPdf used as D")
+        .source("student Nori microfacet: squareToBeckmannPdf used as D")
         .varied(&[("alpha", 0.2, 1.0)])
         .must_fail(&["white-furnace"]),
         // Its pdf is right, and its samples, and both albedos are those of this D.
@@ -74,7 +74,7 @@ pub(super) fn mutants() -> Vec<Mutant> {
                 .pdf(|d, m| d.density(m) * m.z.max(0.0))
                 .made(p)
         })
-        .source("C03-02 student Nori microfacet: squareToBeckmannPdf used as D")
+        .source("student Nori microfacet: squareToBeckmannPdf used as D")
         .varied(&[("alpha", 0.1, 1.0)])
         .must_fail(&["distribution", "white-furnace"]),
         Mutant::new(
@@ -87,8 +87,8 @@ pub(super) fn mutants() -> Vec<Mutant> {
                     .made(p)
             },
         )
-        .source("C03-04 student Nori microfacet, inverse")
-        .varied(&[("alpha", 0.1, 0.6)])
+        .source("student Nori microfacet, inverse")
+        .varied(&[("alpha", 0.2, 0.6)])
         .must_fail(&[
             "distribution",
             "goodness-of-fit",
@@ -105,7 +105,7 @@ pub(super) fn mutants() -> Vec<Mutant> {
                 Altered::of(TorranceSparrow::declared(p)?).eval_times(|_, wo, wi| 1.0 / (wo.z * wi.z)).made()
             },
         )
-        .source("C03-05 pbrt-v3 DisneyClearcoat, pbrt-v3@efd1793")
+        .source("pbrt-v3 DisneyClearcoat, pbrt-v3@efd1793")
         .varied(&[("alpha", 0.1, 0.5)])
         .shows_at(&[75.0])
         .must_fail(&["energy"]),

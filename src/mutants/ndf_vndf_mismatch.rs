@@ -20,7 +20,7 @@ pub(super) fn mutants() -> Vec<Mutant> {
                     .made()
             },
         )
-        .source("C06: VNDF without G1")
+        .source("VNDF without G1")
         .strength(1.0, 1.0, "pdf lacks G1 to this power")
         .varied(&[("alpha", 0.2, 0.8)])
         .shows_at(&[45.0, 75.0])
@@ -35,7 +35,7 @@ pub(super) fn mutants() -> Vec<Mutant> {
                 Altered::of(correct).pdf_of(all).made()
             },
         )
-        .source("C06-02 donut#23")
+        .source("donut#23")
         .varied(&[("alpha", 0.3, 0.8)])
         .must_fail(ALL),
         Mutant::new(
@@ -48,23 +48,24 @@ pub(super) fn mutants() -> Vec<Mutant> {
                 Altered::of(correct).pdf_of(visible).made()
             },
         )
-        .source("C06: NDF sampler, VNDF pdf")
+        .source("NDF sampler, VNDF pdf")
         .varied(&[("alpha", 0.3, 0.8)])
         .must_fail(ALL),
-        // Branches by the third random number leave jacobian a lower bound only.
         Mutant::new(
-            "glass-visible-normals-pdf-of-all",
-            "rough-dielectric:alpha=0.5",
-            "sample() draws visible normals, pdf() is that of all",
+            "glass-all-normals-pdf-of-visible",
+            "rough-dielectric:sampling=normals,alpha=0.5",
+            "sample() draws all normals, pdf() is that of visible ones",
             |p, _| {
                 let correct = RoughDielectric::declared(p)?;
-                let all = RoughDielectric { sampling: NormalSampling::All, ..correct.clone() };
-                Altered::of(correct).pdf_of(all).made()
+                let visible = RoughDielectric { sampling: NormalSampling::Visible, ..correct.clone() };
+                Altered::of(correct).pdf_of(visible).made()
             },
         )
-        .source("C06-02 donut#23, through glass")
+        .source("NDF sampler, VNDF pdf, through glass")
         .varied(&[("alpha", 0.3, 0.8), ("eta", 1.3, 2.0)])
-        .must_fail(ALL),
+        .must_fail(ALL)
+        // Steep facets are rare among all, and not among those seen at grazing.
+        .may_fail(&["support"]),
         Mutant::new(
             "visible-pdf-without-d",
             "torrance-sparrow:alpha=0.5",
@@ -75,9 +76,11 @@ pub(super) fn mutants() -> Vec<Mutant> {
                     .made()
             },
         )
-        .source("C06-01 Mitsuba 3 microfacet.h, mitsuba3@93cd2579a")
+        .source("Mitsuba 3 microfacet.h, mitsuba3@93cd2579a")
         .varied(&[("alpha", 0.2, 0.8)])
-        .must_fail(ALL),
+        .must_fail(ALL)
+        // What is as wide as the hemisphere is where a narrow lobe has no samples.
+        .may_fail(&["support"]),
         Mutant::new(
             "pdf-g2-for-g1",
             "torrance-sparrow:distribution=beckmann,alpha=0.5",
@@ -88,7 +91,7 @@ pub(super) fn mutants() -> Vec<Mutant> {
                     .made()
             },
         )
-        .source("C06: of VNDF another masking")
+        .source("of VNDF another masking")
         .varied(&[("alpha", 0.3, 0.8)])
         .must_fail(ALL),
         Mutant::new(
@@ -113,10 +116,8 @@ pub(super) fn mutants() -> Vec<Mutant> {
                     .made()
             },
         )
-        .source("C06-05 bevy solari, bevy#23442")
+        .source("bevy solari, bevy#23442")
         .varied(&[("alpha", 0.3, 0.8)])
-        .must_fail(&["goodness-of-fit", "normalization", "support", "albedo", "mis", "jacobian"])
-        // What falls where pdf() is 0 is told by support alone.
-        .may_fail(&["returned-pdf"]),
+        .must_fail(&["goodness-of-fit", "normalization", "support", "albedo", "mis", "jacobian"]),
     ]
 }

@@ -18,7 +18,7 @@ fn diffuse() -> Vec<Mutant> {
         Mutant::new("lambert-without-pi", "lambert", "f = ρ, without 1/π", |p, _| {
             Altered::of(Lambert::declared(p)?).eval_times(|_, _, _| PI).made()
         })
-        .source("C01-04 raysect source#349: f lacks 1/π")
+        .source("raysect source#349: f lacks 1/π")
         .varied(&[("reflectance", 0.4, 0.95)])
         .must_fail(&["energy"]),
         // The lobe's albedo is largest, and exactly ks, at normal incidence.
@@ -27,7 +27,7 @@ fn diffuse() -> Vec<Mutant> {
                 .eval(move |m, wo, wi, t| Phong { kd: m.kd + e, ..*m }.eval(wo, wi, t))
                 .made()
         })
-        .source("C19-02 Mitsuba 0.x f231d57b: kd + ks > 1")
+        .source("Mitsuba 0.x f231d57b: kd + ks > 1")
         .shows_at(&[0.0])
         .strength(0.2, 1.0, "kd + ks is 1 + epsilon")
         .varied(&[("exponent", 1.0, 200.0)])
@@ -41,7 +41,7 @@ fn diffuse() -> Vec<Mutant> {
                 Altered::of(TorranceSparrow::declared(p)?).eval_times(move |_, _, _| tint).made()
             },
         )
-        .source("C19-01 pbrt-v3 34ec1db: tint²")
+        .source("pbrt-v3 34ec1db: tint²")
         .varied(&[("f0", 0.1, 0.9), ("alpha", 0.05, 0.8)])
         .must_fail(&["reference"])
         .compared(),
@@ -51,7 +51,7 @@ fn diffuse() -> Vec<Mutant> {
                 .eval(|m, wo, wi, t| Lambert { reflectance: 1.0, ..*m }.eval(wo, wi, t))
                 .made()
         })
-        .source("C19-08 Tungsten 1b23bda")
+        .source("Tungsten 1b23bda")
         .varied(&[("reflectance", 0.1, 0.95)])
         .must_fail(&["sensitivity"]),
         Mutant::new(
@@ -67,7 +67,7 @@ fn diffuse() -> Vec<Mutant> {
                     .made()
             },
         )
-        .source("C19-07 Mitsuba 3 a7d9508b7")
+        .source("Mitsuba 3 a7d9508b7")
         .strength(0.1, 1.0, "share of the transmitted light that is lost")
         .varied(&[("eta", 1.1, 2.5)])
         .must_fail(&["white-furnace"]),
@@ -90,7 +90,7 @@ fn coats() -> Vec<Mutant> {
                     .made()
             },
         )
-        .source("C19-04 playcanvas engine#4459")
+        .source("playcanvas engine#4459")
         .varied(&[("eta", 1.2, 2.5)])
         .must_fail(&["energy", "white-furnace"]),
         Mutant::new(
@@ -107,7 +107,7 @@ fn coats() -> Vec<Mutant> {
                     .made()
             },
         )
-        .source("C19-04 playcanvas engine#4459")
+        .source("playcanvas engine#4459")
         .varied(&[("alpha", 0.02, 0.8), ("eta", 1.2, 2.5)])
         .must_fail(&["energy", "white-furnace"]),
         Mutant::new(
@@ -125,7 +125,7 @@ fn coats() -> Vec<Mutant> {
                     .made()
             },
         )
-        .source("C19-05 Cycles 2b408569f: T² of the coat")
+        .source("Cycles 2b408569f: T² of the coat")
         .strength(1.0, 2.0, "how often more than once the base is attenuated")
         .varied(&[("alpha", 0.02, 0.8), ("eta", 1.2, 2.5)])
         .must_fail(&["white-furnace"]),
@@ -141,7 +141,7 @@ fn lossless() -> Vec<Mutant> {
             "f is too large by the factor 1 + ε",
             |p, e| Altered::of(OrenNayarEon::declared(p)?).eval_times(move |_, _, _| 1.0 + e).made(),
         )
-        .source("C19: any factor")
+        .source("any factor")
         .strength(0.01, 1.0, "f is 1 + epsilon times too large")
         .varied(&[("roughness", 0.0, 1.0)])
         .must_fail(&["energy", "white-furnace"]),
@@ -151,7 +151,7 @@ fn lossless() -> Vec<Mutant> {
             "f is too small by the factor 1 − ε",
             |p, e| Altered::of(GgxMultiscatter::declared(p)?).eval_times(move |_, _, _| 1.0 - e).made(),
         )
-        .source("C19: any factor")
+        .source("any factor")
         .strength(0.01, 1.0, "f is 1 − epsilon times too small")
         .varied(&[("alpha", 0.05, 1.0)])
         .must_fail(&["white-furnace"]),

@@ -12,6 +12,11 @@ pub(super) fn mutants() -> Vec<Mutant> {
     [undefined(), out_of_range(), imprecise()].concat()
 }
 
+/// A factor that is NaN where `x` is, and changes nothing elsewhere.
+fn nan_or_one(x: f64) -> f64 {
+    if x.is_nan() { x } else { 1.0 }
+}
+
 /// 0/0 and the like at single inputs.
 fn undefined() -> Vec<Mutant> {
     vec![
@@ -30,7 +35,7 @@ fn undefined() -> Vec<Mutant> {
                 })
                 .made()
         })
-        .source("C23-01 Mitsuba 0.x concentric disk 9c9d8b83: a missing `else`")
+        .source("Mitsuba 0.x concentric disk 9c9d8b83: a missing `else`")
         .must_fail(&["sanity"]),
         Mutant::new(
             "logarithm-of-zero",
@@ -53,7 +58,7 @@ fn undefined() -> Vec<Mutant> {
                     .made()
             },
         )
-        .source("C23-05 Mitsuba 0.x: u = 0")
+        .source("Mitsuba 0.x: u = 0")
         .varied(&[("alpha", 0.05, 0.8)])
         .must_fail(&["sanity"]),
         Mutant::new(
@@ -64,13 +69,12 @@ fn undefined() -> Vec<Mutant> {
                 Altered::of(OrenNayar::declared(p)?)
                     .eval_times(|_, wo, wi| {
                         let sines = wo.x.hypot(wo.y) * wi.x.hypot(wi.y);
-                        // sin θo sin θi cos Δφ: what was divided comes back.
-                        sines / sines
+                        nan_or_one((wo.x * wi.x + wo.y * wi.y) / sines)
                     })
                     .made()
             },
         )
-        .source("C14-11 pbrt-v2 78dbb94, C23-04 pbrt-v3 bcac285")
+        .source("pbrt-v2 78dbb94, pbrt-v3 bcac285")
         .varied(&[("sigma", 10.0, 80.0)])
         .must_fail(&["sanity"]),
         Mutant::new(
@@ -87,7 +91,7 @@ fn undefined() -> Vec<Mutant> {
                     .made()
             },
         )
-        .source("C14-11 pbrt-v2 7700fb1: wi = −wo")
+        .source("pbrt-v2 7700fb1: wi = −wo")
         .varied(&[("alpha", 0.05, 0.8)])
         .must_fail(&["sanity"]),
         Mutant::new(
@@ -106,7 +110,7 @@ fn undefined() -> Vec<Mutant> {
                     .made()
             },
         )
-        .source("C23-04 rs_pbrt 1b0d5ae: wo.z = 0")
+        .source("rs_pbrt 1b0d5ae: wo.z = 0")
         .varied(&[("alpha", 0.05, 0.8)])
         .must_fail(&["sanity"]),
         Mutant::new(
@@ -114,12 +118,17 @@ fn undefined() -> Vec<Mutant> {
             "oren-nayar-eon:roughness=0",
             "(1 − E(μo)) (1 − E(μi)) is divided by 1 − E_avg = 0",
             |p, _| {
-                // Both are proportional to the roughness.
-                Altered::of(OrenNayarEon::declared(p)?).eval_times(|m, _, _| m.roughness / m.roughness).made()
+                Altered::of(OrenNayarEon::declared(p)?)
+                    .eval_times(|m, wo, wi| {
+                        // All three are proportional to the roughness.
+                        let lost = |w: Direction| m.roughness * m.lost(w.z.min(1.0));
+                        nan_or_one(lost(wo) * lost(wi) / m.roughness)
+                    })
+                    .made()
             },
         )
-        .source("C20-05 Cycles EON 7202f6df4: 0/0 as σ → 0")
-        .varied(&[("reflectance", 0.1, 1.0)])
+        .source("Cycles EON 7202f6df4: 0/0 as σ → 0")
+        .varied(&[("reflectance", 0.1, 0.95)])
         .must_fail(&["sanity"]),
         Mutant::new(
             "power-of-a-negative",
@@ -127,14 +136,11 @@ fn undefined() -> Vec<Mutant> {
             "the cosine is not cut at 0 before it is raised to a power",
             |p, _| {
                 Altered::of(Phong::declared(p)?)
-                    .eval_times(|m, wo, wi| {
-                        let power = wo.mirrored().dot(wi).powf(m.exponent);
-                        if power.is_nan() { power } else { 1.0 }
-                    })
+                    .eval_times(|m, wo, wi| nan_or_one(wo.mirrored().dot(wi).powf(m.exponent)))
                     .made()
             },
         )
-        .source("C23-10 OSL Phong f813908b: pow(negative, e)")
+        .source("OSL Phong f813908b: pow(negative, e)")
         .must_fail(&["sanity"]),
     ]
 }
@@ -152,7 +158,7 @@ fn out_of_range() -> Vec<Mutant> {
                     .made()
             },
         )
-        .source("C22-02 Tungsten 66bda36: delta and continuous lobes mixed")
+        .source("Tungsten 66bda36: delta and continuous lobes mixed")
         .varied(&[("eta", 1.2, 2.5), ("reflectance", 0.1, 1.0)])
         .must_fail(&["sanity", "discrete-lobes"]),
         // Beckmann's lobe is 0 off its peak.
@@ -169,7 +175,7 @@ fn out_of_range() -> Vec<Mutant> {
                     .made()
             },
         )
-        .source("C23-08 Cycles 44995d22e: negative eval")
+        .source("Cycles 44995d22e: negative eval")
         .strength(1e-3, 1.0, "by how much f is too small, in 1/sr")
         .varied(&[("alpha", 0.03, 0.3)])
         .must_fail(&["sanity"]),
@@ -179,7 +185,7 @@ fn out_of_range() -> Vec<Mutant> {
                 .finish(move |_, _, _, s| Some(Sample { wi: s.wi * (1.0 + e), ..s }))
                 .made()
         })
-        .source("§7: wh not normalised")
+        .source("wh not normalised")
         .strength(1e-3, 1.0, "by how much wi is too long")
         .varied(&[("alpha", 0.05, 0.8)])
         .must_fail(&[
@@ -204,7 +210,7 @@ fn out_of_range() -> Vec<Mutant> {
                     .made()
             },
         )
-        .source("C16-02 appleseed PR 2004: negative probabilities")
+        .source("appleseed PR 2004: negative probabilities")
         .strength(0.1, 1.0, "by how much the probability of the lobe is too large")
         .varied(&[("exponent", 2.0, 50.0)])
         .must_fail(&["sanity", "goodness-of-fit", "normalization", "support", "jacobian"])
@@ -220,7 +226,7 @@ fn out_of_range() -> Vec<Mutant> {
                 })
                 .made()
         })
-        .source("C23-08 Cycles: u = 1")
+        .source("Cycles: u = 1")
         .must_fail(&["sanity"]),
     ]
 }
@@ -244,7 +250,7 @@ fn imprecise() -> Vec<Mutant> {
                     .made(p)
             },
         )
-        .source("C23-07 dspbr-pt c3c3eb8")
+        .source("dspbr-pt c3c3eb8")
         .varied(&[("alpha", 0.03, 0.07)])
         .must_fail(&["goodness-of-fit", "normalization", "albedo", "white-furnace"])
         // Its cubature of D, finer than the others, may not converge over the jump; and
@@ -252,7 +258,7 @@ fn imprecise() -> Vec<Mutant> {
         .may_fail(&["distribution", "jacobian"]),
         Mutant::new(
             "pole-of-the-lobe",
-            "torrance-sparrow:alpha=0.05",
+            "torrance-sparrow:alpha=0.1",
             "D = 1 where sin² θh < 1e-4, in eval() and pdf()",
             |p, _| {
                 let hole = |m: &TorranceSparrow, wo: Direction, wi: Direction| {
@@ -262,11 +268,12 @@ fn imprecise() -> Vec<Mutant> {
                 Altered::of(TorranceSparrow::declared(p)?).eval_times(hole).pdf_times(hole).made()
             },
         )
-        .source("C23-07 dspbr-pt c3c3eb8")
-        .varied(&[("alpha", 0.03, 0.07)])
-        .must_fail(&["goodness-of-fit", "normalization", "albedo", "mis"])
-        // Few of its points may lie in the hole.
-        .may_fail(&["jacobian"]),
+        .source("dspbr-pt c3c3eb8")
+        .varied(&[("alpha", 0.07, 0.12)])
+        .must_fail(&["goodness-of-fit", "normalization", "albedo"])
+        // Few points of jacobian may lie in the hole, and the balance heuristic hides
+        // half of it.
+        .may_fail(&["jacobian", "mis"]),
         Mutant::new(
             "cancelling-distribution",
             "torrance-sparrow:alpha=0.001",
@@ -281,7 +288,7 @@ fn imprecise() -> Vec<Mutant> {
                 Altered::of(TorranceSparrow::declared(p)?).eval_times(error).pdf_times(error).made()
             },
         )
-        .source("C23-02 Cycles a1f81909a: 1 + (α² − 1) cos² θ")
+        .source("Cycles a1f81909a: 1 + (α² − 1) cos² θ")
         .varied(&[("alpha", 5e-4, 2e-3)])
         .must_fail(&["jacobian"])
         // No cubature resolves the steps, and the integrals hardly change: rounding of

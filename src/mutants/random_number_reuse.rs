@@ -28,7 +28,7 @@ pub(super) fn mutants() -> Vec<Mutant> {
                     .made()
             },
         )
-        .source("§7: 4 student solutions")
+        .source("4 student solutions")
         .shows_at(&[75.0])
         .varied(&[("alpha", 0.05, 0.15), ("reflectance", 0.3, 0.7)])
         // Where the base has no sample, the coat has none either: a hole in the support.
@@ -49,7 +49,7 @@ pub(super) fn mutants() -> Vec<Mutant> {
                     .made()
             },
         )
-        .source("C10-01 Mitsuba 3 blendbsdf")
+        .source("Mitsuba 3 blendbsdf")
         .varied(&[("alpha", 0.1, 0.6), ("reflectance", 0.2, 0.8)])
         // Numbers below 0 and above 1 lead to no direction at all.
         .must_fail(&["sanity", "goodness-of-fit", "normalization", "support", "albedo", "mis"]),
@@ -72,7 +72,7 @@ pub(super) fn mutants() -> Vec<Mutant> {
                     .made()
             },
         )
-        .source("§7: rescaled, then the raw number used")
+        .source("rescaled, then the raw number used")
         .varied(&[("kd", 0.2, 0.5), ("ks", 0.3, 0.5), ("exponent", 20.0, 100.0)])
         // Each diffuse sample is above the horizon, so that masses hold.
         .must_fail(&["goodness-of-fit", "support", "jacobian"])
@@ -83,7 +83,7 @@ pub(super) fn mutants() -> Vec<Mutant> {
                 .draw(|_, _, u| Some((sample_cosine(&[u[0], u[0]]), Lobe::DIFFUSE_REFLECTION)))
                 .made()
         })
-        .source("C10-08 student Nori")
+        .source("student Nori")
         .varied(&[("reflectance", 0.2, 1.0)])
         // The weight is constant, and a curve of samples has no Jacobian to look at.
         .must_fail(&["goodness-of-fit", "support"]),
@@ -101,7 +101,7 @@ pub(super) fn mutants() -> Vec<Mutant> {
                     .made()
             },
         )
-        .source("C10-07 student Nori: rand()")
+        .source("student Nori: rand()")
         .varied(&[("alpha", 0.1, 0.6), ("reflectance", 0.2, 0.8)])
         .must_fail(&["determinism"])
         // u → wi is no map at all, but its derivative within a lobe looks like one.
@@ -115,7 +115,7 @@ pub(super) fn mutants() -> Vec<Mutant> {
                 })
                 .made()
         })
-        .source("C10-04 Cycles: the state of the generator is copied")
+        .source("Cycles: the state of the generator is copied")
         .varied(&[("reflectance", 0.2, 1.0)])
         .must_fail(&["determinism"]),
         Mutant::new(
@@ -131,7 +131,7 @@ pub(super) fn mutants() -> Vec<Mutant> {
                     .made()
             },
         )
-        .source("C10-02 pbrt-v3: a stretched number rounds to 1")
+        .source("pbrt-v3: a stretched number rounds to 1")
         .varied(&[("alpha", 0.1, 0.6), ("reflectance", 0.2, 0.8)])
         // One number in 10⁸ leads to no direction.
         .must_fail(&["sanity"]),

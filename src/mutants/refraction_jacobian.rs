@@ -29,7 +29,7 @@ pub(super) fn mutants() -> Vec<Mutant> {
                     .made()
             },
         )
-        .source("C07-02 student Nori rough dielectric")
+        .source("student Nori rough dielectric")
         .strength(1.0, 1.0, "exponent of the spurious η²")
         .varied(&[("alpha", 0.1, 0.8), ("eta", 1.2, 2.5)])
         .must_fail(DENSITY),
@@ -46,7 +46,7 @@ pub(super) fn mutants() -> Vec<Mutant> {
                     .made()
             },
         )
-        .source("C07-01 pbrt-v4@dfa11074, pbrt-v4#30")
+        .source("pbrt-v4@dfa11074, pbrt-v4#30")
         .varied(&[("alpha", 0.05, 0.8), ("eta", 1.2, 2.5)])
         .must_fail(DENSITY),
         Mutant::new(
@@ -62,12 +62,12 @@ pub(super) fn mutants() -> Vec<Mutant> {
                     .made()
             },
         )
-        .source("C07: the Jacobian of reflection on what is transmitted")
+        .source("the Jacobian of reflection on what is transmitted")
         .varied(&[("alpha", 0.1, 0.8), ("eta", 1.2, 2.5)])
         .must_fail(DENSITY),
         Mutant::new(
             "no-facet-cosine-in-refraction-jacobian",
-            "rough-dielectric:alpha=0.5,sampling=normals,eta=1.7",
+            "rough-dielectric:alpha=0.5,eta=1.7",
             "pdf() of what is refracted lacks the factor |wi·h| of |dωm/dωi|",
             |p, _| {
                 Altered::of(RoughDielectric::declared(p)?)
@@ -78,7 +78,7 @@ pub(super) fn mutants() -> Vec<Mutant> {
                     .made()
             },
         )
-        .source("C07: a factor of the Jacobian forgotten")
+        .source("a factor of the Jacobian forgotten")
         .varied(&[("alpha", 0.2, 0.8), ("eta", 1.2, 2.5)])
         .must_fail(TOO_LARGE),
         Mutant::new(
@@ -98,7 +98,7 @@ pub(super) fn mutants() -> Vec<Mutant> {
                     .made()
             },
         )
-        .source("C07-04 Tungsten@2d95bdd smooth coat")
+        .source("Tungsten@2d95bdd smooth coat")
         .varied(&[("eta", 1.2, 2.5), ("reflectance", 0.2, 0.9)])
         .must_fail(TOO_LARGE),
     ]

@@ -27,16 +27,18 @@ fn of_pdf() -> Vec<Mutant> {
                     .made()
             },
         )
-        .source("C04: wo·n for wo·h")
+        .source("wo·n for wo·h")
         .varied(&[("alpha", 0.2, 0.8)])
-        .must_fail(ALL),
+        .must_fail(ALL)
+        // At 89° pdf is up to 57 times too large, and where it is there are no samples.
+        .may_fail(&["support"]),
         Mutant::new(
             "pdf-arguments-exchanged",
             "torrance-sparrow:alpha=0.5",
             "pdf(wo, wi) is pdf(wi, wo)",
             |p, _| Altered::of(TorranceSparrow::declared(p)?).pdf(|m, wo, wi| m.pdf(wi, wo, R)).made(),
         )
-        .source("C04-05 three-gpu-pathtracer#215, C04-11 ompf2 t=2132")
+        .source("three-gpu-pathtracer#215, ompf2 t=2132")
         .varied(&[("alpha", 0.3, 0.8)])
         .must_fail(ALL),
         Mutant::new(
@@ -49,7 +51,7 @@ fn of_pdf() -> Vec<Mutant> {
                     .made()
             },
         )
-        .source("C04: exchanged arguments")
+        .source("exchanged arguments")
         .varied(&[("alpha", 0.3, 0.8)])
         .must_fail(ALL),
         Mutant::new(
@@ -65,7 +67,7 @@ fn of_pdf() -> Vec<Mutant> {
                     .made()
             },
         )
-        .source("C04-02 Cycles anisotropic Beckmann, cycles@936cf7634")
+        .source("Cycles anisotropic Beckmann, cycles@936cf7634")
         .varied(&[("alpha", 0.4, 0.9), ("alpha_y", 0.1, 0.4)])
         .must_fail(ALL),
         Mutant::new(
@@ -83,12 +85,12 @@ fn of_pdf() -> Vec<Mutant> {
                     .made()
             },
         )
-        .source("C04-08 OSPRay GGX sampleVisible, ospray@a19d1d1d4")
+        .source("OSPRay GGX sampleVisible, ospray@a19d1d1d4")
         .varied(&[("alpha", 0.05, 0.6)])
         .must_fail(ALL),
         Mutant::new(
             "refraction-wo-h-for-wi-h",
-            "rough-dielectric:alpha=0.4",
+            "rough-dielectric:alpha=0.2",
             "in pdf() the Jacobian of refraction has |wo·h| where |wi·h| must be",
             |p, _| {
                 Altered::of(RoughDielectric::declared(p)?)
@@ -100,7 +102,7 @@ fn of_pdf() -> Vec<Mutant> {
                     .made()
             },
         )
-        .source("C04-04 GLSL-PathTracer@577cff2")
+        .source("GLSL-PathTracer@577cff2")
         .varied(&[("alpha", 0.1, 0.6), ("eta", 1.3, 2.0)])
         // Too small from outside, where the cosine within is the larger.
         .must_fail(ALL),
@@ -115,7 +117,7 @@ fn of_value() -> Vec<Mutant> {
             "eval() is divided by 4 (wi·n)² where 4 wo·n wi·n must be",
             |p, _| Altered::of(TorranceSparrow::declared(p)?).eval_times(|_, wo, wi| wo.z / wi.z).made(),
         )
-        .source("C04-01 OSL closures, OpenShadingLanguage@4626bbf6")
+        .source("OSL closures, OpenShadingLanguage@4626bbf6")
         .varied(&[("alpha", 0.1, 1.0)])
         .must_fail(&["reciprocity"])
         // Brighter where wi is the lower.
@@ -129,7 +131,7 @@ fn of_value() -> Vec<Mutant> {
                 Altered::of(Sheen::declared(p)?).eval(|m, wo, wi, transport| m.eval(wi, wo, transport)).made()
             },
         )
-        .source("C04-07 OSL Westin sheen, OpenShadingLanguage@37c5cb6a")
+        .source("OSL Westin sheen, OpenShadingLanguage@37c5cb6a")
         .varied(&[("roughness", 0.2, 0.8)])
         .must_fail(&["reference"])
         .compared(),

@@ -31,7 +31,7 @@ pub(super) fn mutants() -> Vec<Mutant> {
                     .made()
             },
         )
-        .source("C12-02 samples below the surface discarded and redrawn")
+        .source("samples below the surface discarded and redrawn")
         .strength(1.0, 1.0, "share of the draws below the horizon that are repeated")
         .varied(&[("alpha", 0.3, 1.0)])
         .shows_at(&[60.0, 75.0])
@@ -52,7 +52,7 @@ pub(super) fn mutants() -> Vec<Mutant> {
                     .made()
             },
         )
-        .source("C12: flip below the horizon")
+        .source("flip below the horizon")
         .strength(1.0, 1.0, "share of the draws below the horizon that are mirrored")
         .varied(&[("alpha", 0.3, 1.0)])
         .shows_at(&[60.0, 75.0])
@@ -74,7 +74,7 @@ pub(super) fn mutants() -> Vec<Mutant> {
                     .made()
             },
         )
-        .source("C12-04 Cycles, cycles@9c5ccfab9: valid samples rejected")
+        .source("Cycles, cycles@9c5ccfab9: valid samples rejected")
         .varied(&[("alpha", 0.3, 1.0)])
         .must_fail(ALL),
         // Nothing is left to sample, and all of pdf is where no sample falls.
@@ -91,7 +91,7 @@ pub(super) fn mutants() -> Vec<Mutant> {
                     .made()
             },
         )
-        .source("C12-01 rs_pbrt Oren-Nayar, rs_pbrt@fb18bfc")
+        .source("rs_pbrt Oren-Nayar, rs_pbrt@fb18bfc")
         .varied(&[("sigma", 0.0, 60.0), ("reflectance", 0.2, 0.8)])
         .must_fail(&["goodness-of-fit", "normalization", "albedo", "mis", "support"]),
         Mutant::new(
@@ -110,7 +110,7 @@ pub(super) fn mutants() -> Vec<Mutant> {
                     .made()
             },
         )
-        .source("C12-02 samples below the surface discarded and redrawn, in one lobe of two")
+        .source("samples below the surface discarded and redrawn, in one lobe of two")
         .varied(&[("exponent", 1.0, 20.0)])
         .shows_at(&[75.0])
         .must_fail(ALL),

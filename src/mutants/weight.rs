@@ -28,7 +28,7 @@ pub(super) fn mutants() -> Vec<Mutant> {
             "the weight is f/pdf, without |cos θi|",
             |p, _| weighted(p, |_, _, wi| 1.0 / wi.z)?.made(),
         )
-        .source("§4: weight lacks cos θi")
+        .source("weight lacks cos θi")
         .varied(&[("alpha", 0.1, 0.8)])
         .must_fail(WEIGHT),
         Mutant::new(
@@ -41,7 +41,7 @@ pub(super) fn mutants() -> Vec<Mutant> {
                     .made()
             },
         )
-        .source("C15-02 kajiya")
+        .source("kajiya")
         .varied(&[("roughness", 0.0, 1.0), ("reflectance", 0.2, 1.0)])
         .must_fail(WEIGHT),
         Mutant::new(
@@ -50,7 +50,7 @@ pub(super) fn mutants() -> Vec<Mutant> {
             "the weight of visible normals is F G2 in place of F G2/G1",
             |p, _| weighted(p, |m, wo, _| m.distribution.g1(wo))?.made(),
         )
-        .source("C15-11 Shadertoy")
+        .source("Shadertoy")
         .shows_at(&[75.0])
         .varied(&[("alpha", 0.3, 0.8)])
         .must_fail(WEIGHT),
@@ -60,7 +60,7 @@ pub(super) fn mutants() -> Vec<Mutant> {
             "the weight G2 wo·m/(cos θo cos θm) has cos θi for cos θo",
             |p, _| weighted(p, |_, wo, wi| wo.z / wi.z)?.made(),
         )
-        .source("C15-01 Selas")
+        .source("Selas")
         .varied(&[("alpha", 0.1, 0.8)])
         .must_fail(WEIGHT),
         Mutant::new(
@@ -80,7 +80,7 @@ pub(super) fn mutants() -> Vec<Mutant> {
                     .made()
             },
         )
-        .source("§7: weight from one lobe")
+        .source("weight from one lobe")
         .varied(&[("kd", 0.2, 0.5), ("ks", 0.2, 0.5), ("exponent", 5.0, 60.0)])
         .must_fail(WEIGHT),
         Mutant::new(
@@ -96,7 +96,7 @@ pub(super) fn mutants() -> Vec<Mutant> {
                     .made()
             },
         )
-        .source("C09-02 Mitsuba 0.x composite")
+        .source("Mitsuba 0.x composite")
         .varied(&[("kd", 0.2, 0.5), ("ks", 0.2, 0.5), ("exponent", 5.0, 100.0)])
         .must_fail(WEIGHT),
         Mutant::new(
@@ -124,6 +124,20 @@ pub(super) fn mutants() -> Vec<Mutant> {
         .varied(&[("alpha", 0.05, 0.8)])
         .must_fail(WEIGHT),
         Mutant::new(
+            "weight-scaled",
+            "torrance-sparrow:alpha=0.3",
+            "the weight is too large by the factor 1 + ε",
+            |p, e| {
+                Altered::of(TorranceSparrow::declared(p)?)
+                    .finish(move |_, _, _, s| Some(Sample { weight: s.weight * (1.0 + e), ..s }))
+                    .made()
+            },
+        )
+        .source("a constant in the weight alone")
+        .strength(0.05, 1.0, "the weight is 1 + epsilon times too large")
+        .varied(&[("alpha", 0.05, 0.8)])
+        .must_fail(&["weight", "albedo", "mis"]),
+        Mutant::new(
             "returned-pdf-scaled",
             "oren-nayar-eon",
             "the pdf that comes with a sample is 1 + ε times pdf()",
@@ -150,7 +164,7 @@ pub(super) fn mutants() -> Vec<Mutant> {
                     .made()
             },
         )
-        .source("C15-04 LuisaRender")
+        .source("LuisaRender")
         .varied(&[("alpha", 0.2, 0.6), ("eta", 1.4, 2.0)])
         .must_fail(&["goodness-of-fit", "normalization", "support", "mis", "jacobian"])
         // Where pdf is 0 they leave the word to support.

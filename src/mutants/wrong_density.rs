@@ -21,7 +21,7 @@ fn roughness() -> Vec<Mutant> {
             let rougher = with_alpha_times(&m, 1.0 + e);
             Altered::of(m).pdf_of(rougher).made()
         })
-        .source("C11-01 Cycles hair: a width in sample(), another in pdf()")
+        .source("Cycles hair: a width in sample(), another in pdf()")
         .strength(0.1, 1.0, "alpha is 1 + epsilon times too large in pdf")
         .varied(&[("alpha", 0.02, 0.5)])
         .must_fail(&["goodness-of-fit", "jacobian"])
@@ -39,7 +39,7 @@ fn roughness() -> Vec<Mutant> {
                 Altered::of(m).draw(draws_of(smoother)).made()
             },
         )
-        .source("§4: pdf uses α²")
+        .source("pdf uses α²")
         .varied(&[("alpha", 0.3, 0.7)])
         .must_fail(&["goodness-of-fit", "normalization", "albedo", "mis", "jacobian"]),
         Mutant::new(
@@ -52,7 +52,7 @@ fn roughness() -> Vec<Mutant> {
                 Altered::of(m).draw(draws_of(round)).made()
             },
         )
-        .source("C11-02 Cycles")
+        .source("Cycles")
         .varied(&[("alpha", 0.4, 0.8), ("alpha_y", 0.1, 0.2)])
         .must_fail(&["goodness-of-fit", "normalization", "albedo", "mis", "jacobian"]),
         Mutant::new(
@@ -68,7 +68,7 @@ fn roughness() -> Vec<Mutant> {
                     .made(p)
             },
         )
-        .source("§4: αx ↔ αy")
+        .source("αx ↔ αy")
         .varied(&[("alpha", 0.4, 0.8), ("alpha_y", 0.05, 0.2)])
         // Every normal is drawn, with the weight 1.
         .must_fail(&["goodness-of-fit", "jacobian"])
@@ -104,7 +104,7 @@ fn reflections() -> Vec<Mutant> {
                     .made()
             },
         )
-        .source("C11-10 student microfacet")
+        .source("student microfacet")
         .varied(&[("alpha", 0.1, 0.8)])
         // No sample is left, at the mirror of smooth surfaces neither.
         .must_fail(&[
@@ -126,7 +126,7 @@ fn reflections() -> Vec<Mutant> {
                     .made()
             },
         )
-        .source("§7: 3 student solutions; C11-11 OSL")
+        .source("3 student solutions; OSL")
         .shows_at(&[75.0])
         .varied(&[("alpha", 0.2, 0.8)])
         .must_fail(&["goodness-of-fit", "normalization", "albedo", "mis", "jacobian", "sensitivity"])
@@ -166,7 +166,7 @@ fn warps() -> Vec<Mutant> {
                 .draw(|_, _, u| polar(u[0], (1.0 - u[0] * u[0]).sqrt(), u[1]))
                 .made()
         })
-        .source("§4: four wrong warps")
+        .source("four wrong warps")
         .varied(&[("reflectance", 0.2, 1.0)])
         .must_fail(&["goodness-of-fit", "jacobian"]),
         Mutant::new("polar-angle-uniform", "lambert:reflectance=1", "θ = π u/2", |p, _| {
@@ -177,7 +177,7 @@ fn warps() -> Vec<Mutant> {
                 })
                 .made()
         })
-        .source("§4: four wrong warps")
+        .source("four wrong warps")
         .varied(&[("reflectance", 0.2, 1.0)])
         .must_fail(&["goodness-of-fit", "jacobian"]),
         Mutant::new(
@@ -193,7 +193,7 @@ fn warps() -> Vec<Mutant> {
                     .made()
             },
         )
-        .source("C11-08 student Lambert")
+        .source("student Lambert")
         .varied(&[("reflectance", 0.2, 1.0)])
         .must_fail(&["sanity", "goodness-of-fit", "normalization", "albedo", "mis", "jacobian"]),
         Mutant::new(
@@ -210,7 +210,7 @@ fn warps() -> Vec<Mutant> {
                     .made()
             },
         )
-        .source("§4: four wrong warps")
+        .source("four wrong warps")
         .varied(&[("reflectance", 0.2, 1.0)])
         // wi moves with three numbers, which have no Jacobian. The centre of the cube
         // has no direction.

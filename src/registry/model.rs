@@ -30,7 +30,6 @@ pub struct Model {
     kind: SubjectKind,
     doc: String,
     parameters: Vec<Parameter>,
-    hidden: bool,
     build: Arc<Build>,
 }
 
@@ -56,7 +55,6 @@ impl Model {
             kind: SubjectKind::Bsdf,
             doc: doc.into(),
             parameters: Vec::new(),
-            hidden: false,
             build: Arc::new(build),
         }
     }
@@ -74,7 +72,6 @@ impl Model {
             kind: SubjectKind::Bsdf,
             doc: doc.into(),
             parameters: Vec::new(),
-            hidden: false,
             build: Arc::new(build),
         }
     }
@@ -135,12 +132,6 @@ impl Model {
         self
     }
 
-    /// It is found by its name, but not listed.
-    pub fn hidden(mut self) -> Self {
-        self.hidden = true;
-        self
-    }
-
     /// Declares a number in `range`.
     pub fn number(self, name: &str, default: f64, range: std::ops::RangeInclusive<f64>, doc: &str) -> Self {
         self.declare(name, Kind::Number { default, min: *range.start(), max: *range.end() }, doc)
@@ -193,11 +184,6 @@ impl Model {
     /// Its name.
     pub fn name(&self) -> &str {
         &self.name
-    }
-
-    /// Whether it is left out of lists.
-    pub fn is_hidden(&self) -> bool {
-        self.hidden
     }
 
     /// What its subjects are.

@@ -6,6 +6,7 @@ use super::parameter::{Kind, Parameters, Value};
 use super::spelling::{Spelling, parenthesised};
 use crate::bsdf::{Subject, SubjectKind};
 use crate::{models, mutants};
+use std::borrow::Cow;
 use std::sync::Arc;
 
 /// The model that files are.
@@ -15,6 +16,8 @@ pub const MEASURED: &str = "measured";
 #[derive(Clone, Default)]
 pub struct Registry {
     models: Arc<Vec<Model>>,
+    /// Found by their names, but not listed.
+    hidden: Option<fn(&str) -> Option<Model>>,
 }
 
 impl Registry {
@@ -25,8 +28,7 @@ impl Registry {
 
     /// The models that come with gonio, and its mutants, which are not listed.
     pub fn builtin() -> Self {
-        let mutants = mutants::all().into_iter().chain(mutants::controls()).map(|m| m.model());
-        Self { models: Arc::new(models::all().into_iter().chain(mutants).collect()) }
+        Self { models: Arc::new(models::all()), hidden: Some(mutants::model) }
     }
 
     /// Adds a model; one of the same name is replaced.
@@ -39,12 +41,14 @@ impl Registry {
 
     /// All models that are listed.
     pub fn models(&self) -> impl Iterator<Item = &Model> {
-        self.models.iter().filter(|m| !m.is_hidden())
+        self.models.iter()
     }
 
     /// The model `name`.
-    pub fn model(&self, name: &str) -> Result<&Model, RegistryError> {
-        self.models.iter().find(|m| m.name() == name).ok_or_else(|| RegistryError::UnknownModel {
+    pub fn model(&self, name: &str) -> Result<Cow<'_, Model>, RegistryError> {
+        let listed = self.models.iter().find(|m| m.name() == name).map(Cow::Borrowed);
+        let found = listed.or_else(|| self.hidden.and_then(|find| find(name)).map(Cow::Owned));
+        found.ok_or_else(|| RegistryError::UnknownModel {
             name: name.into(),
             nearest: nearest(name, self.models.iter().map(Model::name)),
             known: self.models().map(|m| m.name().to_string()).collect(),

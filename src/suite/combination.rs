@@ -50,7 +50,7 @@ impl Combinations {
                 return None;
             }
         };
-        let values = values(model, entry, mistakes);
+        let values = values(&model, entry, mistakes);
         if mistakes.len() > before {
             return None;
         }
@@ -68,7 +68,7 @@ impl Combinations {
             let given = values.iter().zip(&row).map(|(list, k)| list[*k].clone()).collect();
             let spelling = Spelling { name: model.name().into(), parameters: given };
             match registry.resolve(&spelling) {
-                Ok(resolved) => found.add(registry, model, entry, &reference, resolved),
+                Ok(resolved) => found.add(registry, &model, entry, &reference, resolved),
                 Err(e) => {
                     found.refused += 1;
                     found.all.push(None);
