@@ -58,7 +58,7 @@ pub(super) fn mutants() -> Vec<Mutant> {
                     .made()
             },
         )
-        .source("one lobe folded")
+        .source("our own: one share of two")
         .shows_at(&[75.0])
         .varied(&[("alpha", 0.1, 0.6), ("reflectance", 0.3, 0.8)])
         .must_fail(&["goodness-of-fit", "normalization", "albedo", "mis"]),
