@@ -72,7 +72,7 @@ pub(super) fn mutants() -> Vec<Mutant> {
                     .made()
             },
         )
-        .source("rescaled, then the raw number used")
+        .source("student solutions: stretched, then the raw number used")
         .varied(&[("kd", 0.2, 0.5), ("ks", 0.3, 0.5), ("exponent", 20.0, 100.0)])
         // Each diffuse sample is above the horizon, so that masses hold.
         .must_fail(&["goodness-of-fit", "support", "jacobian"])

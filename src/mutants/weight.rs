@@ -28,7 +28,7 @@ pub(super) fn mutants() -> Vec<Mutant> {
             "the weight is f/pdf, without |cos θi|",
             |p, _| weighted(p, |_, _, wi| 1.0 / wi.z)?.made(),
         )
-        .source("weight lacks cos θi")
+        .source("student solutions")
         .varied(&[("alpha", 0.1, 0.8)])
         .must_fail(WEIGHT),
         Mutant::new(
@@ -50,7 +50,7 @@ pub(super) fn mutants() -> Vec<Mutant> {
             "the weight of visible normals is F G2 in place of F G2/G1",
             |p, _| weighted(p, |m, wo, _| m.distribution.g1(wo))?.made(),
         )
-        .source("Shadertoy")
+        .source("shaders on Shadertoy")
         .shows_at(&[75.0])
         .varied(&[("alpha", 0.3, 0.8)])
         .must_fail(WEIGHT),
@@ -80,7 +80,7 @@ pub(super) fn mutants() -> Vec<Mutant> {
                     .made()
             },
         )
-        .source("weight from one lobe")
+        .source("a student solution")
         .varied(&[("kd", 0.2, 0.5), ("ks", 0.2, 0.5), ("exponent", 5.0, 60.0)])
         .must_fail(WEIGHT),
         Mutant::new(
@@ -123,20 +123,6 @@ pub(super) fn mutants() -> Vec<Mutant> {
         .strength(0.05, 1.0, "the weight is 1 + epsilon times too large")
         .varied(&[("alpha", 0.05, 0.8)])
         .must_fail(WEIGHT),
-        Mutant::new(
-            "weight-scaled",
-            "torrance-sparrow:alpha=0.3",
-            "the weight is too large by the factor 1 + ε",
-            |p, e| {
-                Altered::of(TorranceSparrow::declared(p)?)
-                    .finish(move |_, _, _, s| Some(Sample { weight: s.weight * (1.0 + e), ..s }))
-                    .made()
-            },
-        )
-        .source("a constant in the weight alone")
-        .strength(0.05, 1.0, "the weight is 1 + epsilon times too large")
-        .varied(&[("alpha", 0.05, 0.8)])
-        .must_fail(&["weight", "albedo", "mis"]),
         Mutant::new(
             "returned-pdf-scaled",
             "oren-nayar-eon",

@@ -39,7 +39,7 @@ fn roughness() -> Vec<Mutant> {
                 Altered::of(m).draw(draws_of(smoother)).made()
             },
         )
-        .source("pdf uses α²")
+        .source("our own: two meanings of roughness")
         .varied(&[("alpha", 0.3, 0.7)])
         .must_fail(&["goodness-of-fit", "normalization", "albedo", "mis", "jacobian"]),
         Mutant::new(
@@ -68,7 +68,7 @@ fn roughness() -> Vec<Mutant> {
                     .made(p)
             },
         )
-        .source("αx ↔ αy")
+        .source("our own: two axes exchanged")
         .varied(&[("alpha", 0.4, 0.8), ("alpha_y", 0.05, 0.2)])
         // Every normal is drawn, with the weight 1.
         .must_fail(&["goodness-of-fit", "jacobian"])
@@ -166,7 +166,7 @@ fn warps() -> Vec<Mutant> {
                 .draw(|_, _, u| polar(u[0], (1.0 - u[0] * u[0]).sqrt(), u[1]))
                 .made()
         })
-        .source("four wrong warps")
+        .source("our own: a warp that looks right")
         .varied(&[("reflectance", 0.2, 1.0)])
         .must_fail(&["goodness-of-fit", "jacobian"]),
         Mutant::new("polar-angle-uniform", "lambert:reflectance=1", "θ = π u/2", |p, _| {
@@ -177,7 +177,7 @@ fn warps() -> Vec<Mutant> {
                 })
                 .made()
         })
-        .source("four wrong warps")
+        .source("our own: a warp that looks right")
         .varied(&[("reflectance", 0.2, 1.0)])
         .must_fail(&["goodness-of-fit", "jacobian"]),
         Mutant::new(
@@ -210,7 +210,7 @@ fn warps() -> Vec<Mutant> {
                     .made()
             },
         )
-        .source("four wrong warps")
+        .source("our own: a warp that looks right")
         .varied(&[("reflectance", 0.2, 1.0)])
         // wi moves with three numbers, which have no Jacobian. The centre of the cube
         // has no direction.
