@@ -35,13 +35,12 @@ const fn line(check: &'static str, mutant: &'static str, truth: Truth) -> Line {
 const GOODNESS_OF_FIT: &str = "goodness-of-fit";
 const REFERENCE: &str = "reference";
 
-const LINES: [Line; 6] = [
+const LINES: [Line; 5] = [
     line(GOODNESS_OF_FIT, "pdf-scaled", Truth::Cells),
     line(GOODNESS_OF_FIT, "pdf-alpha", Truth::Cells),
     line("normalization", "pdf-scaled", Truth::Strength),
     line("albedo", "weight-scaled", Truth::Strength),
     line("mis", "returned-pdf-scaled", Truth::Mean),
-    line("discrete-lobes", "discrete-probability-off", Truth::Strength),
 ];
 
 /// Errors tried, in parts of the limit.
