@@ -207,7 +207,7 @@ impl KillMatrix {
                 let (cases, grids): (Vec<_>, Vec<_>) = all.into_iter().unzip();
                 Row { grids: rejections(&grids), ..judged(mutant, &cases) }
             };
-            work.unit(&format!("mutants/{}", mutant.name), &cases, one, sum_up)
+            work.unit(&format!("mutants/{}", mutant.model_name()), &cases, one, sum_up)
         };
         let rows = planned.iter().map(row).collect::<Result<_, _>>()?;
         Ok(Self { suite: settings(work.effort).into(), rows })

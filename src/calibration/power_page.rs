@@ -35,12 +35,14 @@ impl Power {
     /// In their order, each once.
     fn mutants(&self) -> Vec<&str> {
         let mut names: Vec<&str> = self.curves.iter().map(|c| c.mutant.as_str()).collect();
-        names.dedup();
+        let mut seen = BTreeSet::new();
+        names.retain(|name| seen.insert(*name));
         names
     }
 
     fn plot(&self, decision: Decision, title: &str) -> String {
-        let draws = self.draws();
+        let measured = |c: &&Curve| smallest(c, decision).is_some();
+        let draws: BTreeSet<u64> = self.curves.iter().filter(measured).map(|c| c.samples).collect();
         let row = |mutant: &&str| IntervalRow {
             name: mutant.trim_start_matches("mutant-").into(),
             intervals: draws
@@ -58,7 +60,12 @@ impl Power {
             decades: (-6, 1),
             series: draws.iter().map(|n| format!("2^{} draws", n.ilog2())).collect(),
             limit_name: String::new(),
-            rows: self.mutants().iter().map(row).collect(),
+            rows: self
+                .mutants()
+                .iter()
+                .map(row)
+                .filter(|r| r.intervals.iter().any(Option::is_some))
+                .collect(),
         };
         plot.svg()
     }

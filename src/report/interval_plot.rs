@@ -103,6 +103,9 @@ impl IntervalPlot {
             mark(figure, (664.0, y), k, LINES[k % LINES.len()]);
             figure.text((680.0, y), name, small);
         }
+        if self.limit_name.is_empty() {
+            return;
+        }
         let y = 92.0 + 27.0 * self.series.len() as f64;
         figure.line(&[(664.0, y - 9.0), (664.0, y + 9.0)], Pen::new(INK, 3.0));
         figure.text((680.0, y), &self.limit_name, small);
