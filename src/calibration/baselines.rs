@@ -6,11 +6,10 @@ use super::part::{Part, PartId, Picture};
 use super::progress::Unfinished;
 use super::rates::Rate;
 use super::work::{Effort, Work};
-use crate::bsdf::{Direction, Subject, SubjectKind, Transport};
+use crate::bsdf::{Description, Direction, Subject, SubjectKind, Transport};
 use crate::engine::CaseResult;
-use crate::registry::Registry;
 use crate::statistics::streams::StreamKey;
-use crate::suite::{Case, Overrides, embedded, load};
+use crate::suite::{Case, Plan};
 use serde::{Deserialize, Serialize};
 use std::collections::BTreeMap;
 use std::sync::Arc;
@@ -35,6 +34,11 @@ pub(super) fn rejects(
     Some(outcome.p_value < significance)
 }
 
+/// Whether it is a BSDF with the two functions that a recipe compares.
+fn has_both(description: &Description) -> bool {
+    description.kind == SubjectKind::Bsdf && description.has.pdf && description.has.sample
+}
+
 fn key_of(case: &Case, seed: u64) -> StreamKey {
     StreamKey::new(seed)
         .with("subject", &case.spelling)
@@ -53,8 +57,7 @@ pub(super) fn is_tested(k: usize, cases: usize) -> bool {
 /// What each recipe says of a measured case, beside others of its subject.
 pub(super) fn of_case(result: &CaseResult, seed: u64) -> [Option<bool>; 2] {
     let case = &result.case;
-    let has = result.evidence.as_ref().map(|e| (e.description.kind, e.description.has));
-    if has.is_none_or(|(kind, has)| kind != SubjectKind::Bsdf || !has.pdf || !has.sample) {
+    if !result.evidence.as_ref().is_some_and(|e| has_both(&e.description)) {
         return [None; 2];
     }
     let level = sidak(RECIPES[0].significance, DIRECTIONS as u32);
@@ -95,15 +98,8 @@ pub struct Baselines {
 impl Baselines {
     /// Tests every case that has a sampler and a continuous pdf.
     pub(super) fn measure(work: &Work) -> Result<Self, Unfinished> {
-        let name = if work.effort == Effort::Quick { "quick" } else { "seed" };
-        let suite = embedded(name).expect("the suite comes with gonio");
-        let plan = load(suite.name, suite.text, &Registry::builtin(), &Overrides::default());
-        let cases = plan.unwrap_or_else(|e| panic!("{name}: {e:?}")).plan.cases;
-        let fits = |case: &&Arc<Case<'static>>| {
-            let description = case.subject.describe();
-            description.kind == SubjectKind::Bsdf && description.has.pdf && description.has.sample
-        };
-        let mut cases: Vec<_> = cases.iter().filter(fits).cloned().collect();
+        let Plan { suite, mut cases, .. } = work.effort.plan();
+        cases.retain(|case| has_both(&case.subject.describe()));
         if work.effort == Effort::Quick {
             cases.truncate(24);
         }
@@ -118,7 +114,7 @@ impl Baselines {
             let key = format!("fixed-grids/{}", grid.name);
             alarms.push(work.unit(&key, &cases, one, |all| counted(&grid, all))?);
         }
-        Ok(Self { suite: name.into(), alarms })
+        Ok(Self { suite, alarms })
     }
 }
 

@@ -11,9 +11,8 @@ use super::work::{Effort, Work};
 use crate::checks::{self, Verdict, level_p_values};
 use crate::engine::{CaseResult, Finding};
 use crate::evidence::Figure;
-use crate::registry::Registry;
 use crate::statistics::budget::{Budget, attempt};
-use crate::suite::{Case, FALSE_ALARM, Overrides, embedded, load, reproduce};
+use crate::suite::{Case, FALSE_ALARM, Plan, reproduce};
 use serde::{Deserialize, Serialize};
 use std::collections::BTreeMap;
 use std::sync::Arc;
@@ -50,14 +49,12 @@ pub struct Scope {
 impl Scope {
     /// The cases of the default suite, or of the quick one.
     pub fn of(effort: Effort) -> Self {
-        let (name, seeds) = match effort {
-            Effort::Quick => ("quick", QUICK_SEEDS),
-            Effort::Full => ("seed", FULL_SEEDS),
+        let seeds = match effort {
+            Effort::Quick => QUICK_SEEDS,
+            Effort::Full => FULL_SEEDS,
         };
-        let suite = embedded(name).expect("the suite comes with gonio");
-        let loaded = load(name, suite.text, &Registry::builtin(), &Overrides::default());
-        let cases = loaded.unwrap_or_else(|_| panic!("the suite `{name}` is right")).plan.cases;
-        Self { suite: name.into(), cases, seeds, raised: RAISED, default: FALSE_ALARM }
+        let Plan { suite, cases, .. } = effort.plan();
+        Self { suite, cases, seeds, raised: RAISED, default: FALSE_ALARM }
     }
 }
 

@@ -9,7 +9,7 @@ use crate::checks::{self, Verdict};
 use crate::engine::{self, CaseResult, Options};
 use crate::mutants::{Mutant, all, controls};
 use crate::registry::Registry;
-use crate::suite::{Overrides, PHI, Plan, THETA, embedded, load};
+use crate::suite::{Overrides, PHI, Plan, THETA, load};
 use serde::{Deserialize, Serialize};
 use std::collections::BTreeMap;
 
@@ -112,20 +112,11 @@ impl Row {
     }
 }
 
-/// The suite whose settings and thresholds are taken.
-fn settings(effort: Effort) -> &'static str {
-    match effort {
-        Effort::Quick => "quick",
-        Effort::Full => "seed",
-    }
-}
-
 /// The suite that measures a mutant: the settings of the quick suite where the mutant
 /// shows best, or those of the default suite at all of its directions.
 fn suite_of(mutant: &Mutant, effort: Effort) -> String {
-    let text = embedded(settings(effort)).expect("the suite comes with gonio").text;
     // They stand above its first subject, and comments may speak of subjects.
-    let settings = text.split("\n[[subject]]").next().unwrap_or_default();
+    let settings = effort.suite().text.split("\n[[subject]]").next().unwrap_or_default();
     let mut suite = format!("{settings}\n[[subject]]\nuse = \"{}\"\n", mutant.model_name());
     if effort == Effort::Quick {
         suite += &format!("theta = {:?}\n", mutant.shows_at);
@@ -147,20 +138,14 @@ struct Plans {
 
 impl Plans {
     fn new(effort: Effort, seed: u64) -> Self {
-        let own = embedded(settings(effort)).expect("the suite comes with gonio");
-        let mut plans = Self { registry: Registry::builtin(), effort, seed, share: 0.0 };
-        (_, plans.share) = engine::shares(&plans.load(own.name, own.text));
-        plans
-    }
-
-    fn load(&self, name: &str, text: &str) -> Plan<'static> {
-        let overrides = Overrides { seed: Some(self.seed), ..Overrides::default() };
-        let expanded = load(name, text, &self.registry, &overrides);
-        expanded.unwrap_or_else(|e| panic!("{name}: {e:?}")).plan
+        let (_, share) = engine::shares(&effort.plan());
+        Self { registry: Registry::builtin(), effort, seed, share }
     }
 
     fn of(&self, mutant: &Mutant) -> Plan<'static> {
-        let mut plan = self.load(mutant.name, &suite_of(mutant, self.effort));
+        let overrides = Overrides { seed: Some(self.seed), ..Overrides::default() };
+        let expanded = load(mutant.name, &suite_of(mutant, self.effort), &self.registry, &overrides);
+        let mut plan = expanded.unwrap_or_else(|e| panic!("{}: {e:?}", mutant.name)).plan;
         if self.effort == Effort::Full {
             // Each polar angle once, the azimuths in turn: the suite itself spreads
             // them over a model's parameters.
@@ -210,7 +195,7 @@ impl KillMatrix {
             work.unit(&format!("mutants/{}", mutant.model_name()), &cases, one, sum_up)
         };
         let rows = planned.iter().map(row).collect::<Result<_, _>>()?;
-        Ok(Self { suite: settings(work.effort).into(), rows })
+        Ok(Self { suite: work.effort.suite().name.into(), rows })
     }
 }
 

@@ -2,7 +2,8 @@
 
 use super::progress::{Progress, Unfinished};
 use crate::engine::{Options, Results, run_here};
-use crate::suite::{Case, Plan};
+use crate::registry::Registry;
+use crate::suite::{Case, Embedded, Overrides, Plan, embedded, load};
 use rayon::prelude::*;
 use rayon::{ThreadPool, ThreadPoolBuilder};
 use serde::de::DeserializeOwned;
@@ -17,6 +18,24 @@ pub enum Effort {
     Quick,
     /// All parts within an hour.
     Full,
+}
+
+impl Effort {
+    /// The embedded suite whose subjects, settings and thresholds are taken.
+    pub(super) fn suite(self) -> Embedded {
+        let name = match self {
+            Self::Quick => "quick",
+            Self::Full => "seed",
+        };
+        embedded(name).expect("the suite comes with gonio")
+    }
+
+    /// The plan of that suite with its own seed.
+    pub(super) fn plan(self) -> Plan<'static> {
+        let Embedded { name, text } = self.suite();
+        let loaded = load(name, text, &Registry::builtin(), &Overrides::default());
+        loaded.unwrap_or_else(|e| panic!("the suite `{name}` is right: {e:?}")).plan
+    }
 }
 
 /// What is told on the way, from any thread.

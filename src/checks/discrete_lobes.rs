@@ -137,14 +137,8 @@ fn probabilities(evidence: &Evidence, terms: &Terms) -> Judgement {
     let mut worst = (f64::INFINITY, 0);
     for (k, lobe) in draws.discrete.iter().enumerate() {
         let slack = terms.tolerance * spread(lobe.probability);
-        let share = lobe.count as f64 / n as f64;
-        let ln_p = if share > lobe.probability + slack {
-            binomial::ln_upper_tail(lobe.count, n, lobe.probability + slack)
-        } else if share < lobe.probability - slack {
-            binomial::ln_lower_tail(lobe.count, n, (lobe.probability - slack).min(1.0))
-        } else {
-            0.0
-        };
+        let p = lobe.probability;
+        let ln_p = binomial::ln_tail_beyond(lobe.count, n, p - slack, p + slack);
         let ln_p = (ln_p + correction).min(0.0);
         if ln_p < worst.0 {
             worst = (ln_p, k);

@@ -112,13 +112,8 @@ pub fn strict_ln_p(evidence: &Evidence) -> Option<f64> {
     let mass = if mass - error > 1.0 {
         f64::NEG_INFINITY
     } else {
-        let (n, mass) = (draws.samples, mass.min(1.0));
-        let tail = if valid as f64 > n as f64 * mass {
-            binomial::ln_upper_tail(valid, n, mass)
-        } else {
-            binomial::ln_lower_tail(valid, n, mass)
-        };
-        (tail + 2f64.ln()).min(0.0)
+        let mass = mass.min(1.0);
+        (binomial::ln_tail_beyond(valid, draws.samples, mass, mass) + 2f64.ln()).min(0.0)
     };
     Some((levels.min(mass) + 2f64.ln()).min(0.0))
 }
@@ -316,12 +311,7 @@ fn guard(tree: &Pooled, n: u64, terms: &Terms) -> f64 {
         if beyond <= 3.0 * (cell.expected * (1.0 - p)).sqrt() {
             continue;
         }
-        let ln_p = if share > high {
-            binomial::ln_upper_tail(cell.observed, n, high)
-        } else {
-            binomial::ln_lower_tail(cell.observed, n, low.min(1.0))
-        };
-        worst = worst.min(ln_p);
+        worst = worst.min(binomial::ln_tail_beyond(cell.observed, n, low, high));
     }
     (worst + (2.0 * tree.nodes.len() as f64).ln()).min(0.0)
 }

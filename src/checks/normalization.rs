@@ -49,13 +49,7 @@ impl Check for Normalization {
         }
         let slack = terms.mean_tolerance * mass + error;
         let (low, high) = (mass - slack, mass + slack);
-        let ln_p = if share > high {
-            binomial::ln_upper_tail(valid, n, high)
-        } else if share < low {
-            binomial::ln_lower_tail(valid, n, low.min(1.0))
-        } else {
-            0.0
-        };
+        let ln_p = binomial::ln_tail_beyond(valid, n, low, high);
         // Either side could have been the one.
         let ln_p = (ln_p + 2f64.ln()).min(0.0);
         let ends = binomial::proportion_interval(valid, n, 0.025);

@@ -186,9 +186,10 @@ pub fn all() -> Vec<Mutant> {
 /// The model of the mutant or control that is called `name`.
 pub fn model(name: &str) -> Option<Model> {
     // Most names are none of a mutant, and there are many mutants.
-    let is_one = PREFIX.iter().any(|prefix| name.starts_with(prefix));
-    let mut all = all().into_iter().chain(controls()).filter(|_| is_one);
-    all.find(|m| m.model_name() == name).map(|m| m.model())
+    if !PREFIX.iter().any(|prefix| name.starts_with(prefix)) {
+        return None;
+    }
+    all().into_iter().chain(controls()).find(|m| m.model_name() == name).map(|m| m.model())
 }
 
 /// Negative controls: correct code that looks wrong, which must pass.

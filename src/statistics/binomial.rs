@@ -11,6 +11,19 @@ pub fn ln_upper_tail(k: u64, n: u64, p: f64) -> f64 {
     ln_tail(k, n, p, 1.0 - p)
 }
 
+/// Natural logarithm of the tail from k on outwards where k/n lies outside of `low` to
+/// `high`, of which the nearer end is taken as p; 0 where it lies inside.
+pub fn ln_tail_beyond(k: u64, n: u64, low: f64, high: f64) -> f64 {
+    let share = k as f64 / n as f64;
+    if share > high {
+        ln_upper_tail(k, n, high)
+    } else if share < low {
+        ln_lower_tail(k, n, low.min(1.0))
+    } else {
+        0.0
+    }
+}
+
 /// Natural logarithm of P(X ≤ k); otherwise as [`ln_upper_tail`].
 pub fn ln_lower_tail(k: u64, n: u64, p: f64) -> f64 {
     if k >= n {
