@@ -8,6 +8,9 @@ use super::figure::{Anchor, Figure, Pen, Type};
 const WIDTH: f64 = 860.0;
 const HEIGHT: f64 = 500.0;
 
+/// Where names of the legend begin.
+const LEGEND: f64 = 686.0;
+
 /// A line, by its name in the legend.
 #[derive(Clone, Debug, PartialEq)]
 pub struct Line {
@@ -74,8 +77,11 @@ impl LinePlot {
     /// As SVG.
     pub fn svg(&self) -> String {
         let names: Vec<&str> = self.lines.iter().map(|l| l.name.as_str()).collect();
+        // The longest name of the legend, at half an em a letter.
+        let longest = names.iter().map(|n| n.chars().count()).max().unwrap_or(0);
+        let width = WIDTH.max(LEGEND + 8.0 * longest as f64);
         let mut figure =
-            Figure::new(WIDTH, HEIGHT, &self.title, &format!("{} Lines: {}.", self.note, names.join(", ")));
+            Figure::new(width, HEIGHT, &self.title, &format!("{} Lines: {}.", self.note, names.join(", ")));
         figure.text((20.0, 26.0), &self.title, Type::new(Anchor::Start).size(20.0).bold());
         figure.text((20.0, 54.0), &self.note, Type::new(Anchor::Start).colour(SOFT_INK));
         let axes = Axes { from: (96.0, 80.0), to: (620.0, 440.0), x: self.x, y: self.y };
@@ -96,7 +102,7 @@ impl LinePlot {
         for (k, line) in self.lines.iter().enumerate() {
             let y = 96.0 + 27.0 * k as f64;
             figure.line(&[(640.0, y), (676.0, y)], line.pen());
-            figure.text((686.0, y), &line.name, Type::new(Anchor::Start).size(15.0));
+            figure.text((LEGEND, y), &line.name, Type::new(Anchor::Start).size(15.0));
         }
         figure.finish()
     }
