@@ -2,6 +2,8 @@
 //! wrong what is wrong.
 
 mod baselines;
+mod confusion;
+mod confusion_page;
 mod false_alarms;
 mod false_alarms_page;
 mod fixed_grid;
@@ -21,6 +23,7 @@ mod uniformity;
 mod work;
 
 pub use baselines::{Baselines, GridAlarms};
+pub use confusion::{Confusion, Diagnosed, Named};
 pub use false_alarms::{Alarm, CheckAlarms, FalseAlarms, Scope};
 pub use fixed_grid::{FixedGrid, GridOutcome, NORI, PBRT, RECIPES, Spacing, sidak};
 pub use kill_matrix::{Answer, Expected, KillMatrix, Row, quick_rows};

@@ -13,12 +13,14 @@ pub enum PartId {
     Limits,
     /// How often the fixed grids of renderers reject what is right.
     Baselines,
+    /// Which cause a diagnosis names.
+    Confusion,
 }
 
 impl PartId {
     /// Every part, in the order of the report.
-    pub const ALL: [Self; 5] =
-        [Self::FalseAlarms, Self::KillMatrix, Self::Power, Self::Limits, Self::Baselines];
+    pub const ALL: [Self; 6] =
+        [Self::FalseAlarms, Self::KillMatrix, Self::Confusion, Self::Power, Self::Limits, Self::Baselines];
 
     /// As it is asked for.
     pub fn name(self) -> &'static str {
@@ -28,6 +30,7 @@ impl PartId {
             Self::Power => "power",
             Self::Limits => "limits",
             Self::Baselines => "fixed-grids",
+            Self::Confusion => "diagnoses",
         }
     }
 
@@ -45,6 +48,7 @@ impl PartId {
             Self::KillMatrix => "which check catches which planted bug, and whether correct code passes",
             Self::Power => "the smallest error of each kind that is found in 95 % of runs",
             Self::Baselines => "how often the fixed-grid tests of renderers reject what is right",
+            Self::Confusion => "which cause a diagnosis names, against the one that is there",
             Self::Limits => "how often errors of the size that a pass says it would have seen are seen",
         }
     }

@@ -1,6 +1,7 @@
 //! The result of a calibration: calibration.json, and the views made of it.
 
 use super::baselines::Baselines;
+use super::confusion::Confusion;
 use super::false_alarms::{FalseAlarms, Scope};
 use super::kill_matrix::KillMatrix;
 use super::limits::Limits;
@@ -48,6 +49,9 @@ pub struct Calibration {
     /// Which check catches which planted bug.
     #[serde(default, skip_serializing_if = "Option::is_none")]
     pub kill_matrix: Option<KillMatrix>,
+    /// Which cause a diagnosis names.
+    #[serde(default, skip_serializing_if = "Option::is_none")]
+    pub diagnoses: Option<Confusion>,
     /// The smallest errors that are found.
     #[serde(default, skip_serializing_if = "Option::is_none")]
     pub power: Option<Power>,
@@ -78,6 +82,7 @@ impl Calibration {
             errors: Vec::new(),
             false_alarms: None,
             kill_matrix: None,
+            diagnoses: None,
             power: None,
             limits: None,
             fixed_grids: None,
@@ -87,6 +92,9 @@ impl Calibration {
         }
         if asked(PartId::KillMatrix) {
             calibration.kill_matrix = Some(KillMatrix::measure(work)?);
+        }
+        if asked(PartId::Confusion) {
+            calibration.diagnoses = Some(Confusion::measure(work)?);
         }
         if asked(PartId::Power) {
             calibration.power = Some(Power::measure(work)?);
@@ -104,9 +112,10 @@ impl Calibration {
 
     /// The parts that were measured, in the order of the report.
     pub fn parts(&self) -> Vec<&dyn Part> {
-        let parts: [Option<&dyn Part>; 5] = [
+        let parts: [Option<&dyn Part>; 6] = [
             self.false_alarms.as_ref().map(|p| p as _),
             self.kill_matrix.as_ref().map(|p| p as _),
+            self.diagnoses.as_ref().map(|p| p as _),
             self.power.as_ref().map(|p| p as _),
             self.limits.as_ref().map(|p| p as _),
             self.fixed_grids.as_ref().map(|p| p as _),

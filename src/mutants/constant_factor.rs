@@ -3,6 +3,7 @@
 use super::altered::{Altered, R};
 use super::mutant::Mutant;
 use crate::bsdf::Bsdf;
+use crate::cause::Cause;
 use crate::models::microfacet::{GgxMultiscatter, TorranceSparrow};
 use crate::models::{Lambert, Phong};
 use std::f64::consts::PI;
@@ -76,6 +77,10 @@ pub(super) fn mutants() -> Vec<Mutant> {
             "eval() is too bright by the factor 1 + ε",
             |p, e| Altered::of(GgxMultiscatter::declared(p)?).eval_times(move |_, _, _| 1.0 + e).made(),
         )
+        .equivalent(&[(
+            Cause::Normalization,
+            "f times a constant is the same whichever function it was meant for",
+        )])
         .source("raysect/source#349: f of a library off by a constant")
         .strength(0.02, 1.0, "f is 1 + epsilon times too large")
         .varied(&[("alpha", 0.05, 1.0)])

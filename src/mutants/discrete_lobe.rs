@@ -3,6 +3,7 @@
 use super::altered::{Altered, R};
 use super::mutant::Mutant;
 use crate::bsdf::{Bsdf, Direction, Lobe, Sample};
+use crate::cause::Cause;
 use crate::models::microfacet::TorranceSparrow;
 use crate::models::{Conductor, Dielectric, Plastic, fresnel};
 use std::f64::consts::PI;
@@ -75,6 +76,10 @@ fn of_flags() -> Vec<Mutant> {
                 Altered::of(Plastic::declared(p)?).pdf_times(|m, wo, wi| wi.z / PI / m.pdf(wo, wi, R)).made()
             },
         )
+        .equivalent(&[(
+            Cause::LobeProbability,
+            "the density of the base lacks the probability of not drawing the mirror",
+        )])
         .source("tungsten@66bda36: discrete and continuous lobes mixed")
         .varied(&[("reflectance", 0.05, 0.8), ("eta", 1.3, 2.5)])
         .must_fail(&["goodness-of-fit", "normalization", "albedo", "mis"]),

@@ -4,6 +4,7 @@ use super::altered::{Altered, half};
 use super::altered_parts::AlteredFresnel;
 use super::mutant::Mutant;
 use crate::bsdf::{Bsdf, FresnelFunction, Lobe, Sample, Spectrum};
+use crate::cause::Cause;
 use crate::models::microfacet::{Fresnel, RoughPlastic, TorranceSparrow};
 use crate::models::{Dielectric, Plastic, fresnel};
 
@@ -62,6 +63,10 @@ fn of_surfaces() -> Vec<Mutant> {
                     .made()
             },
         )
+        .equivalent(&[(
+            Cause::Normalization,
+            "the coat attenuates twice, by a squared F or by a second factor",
+        )])
         .source("glTF#2022")
         .strength(1.0, 2.0, "exponent of 1 − F beyond the right one")
         .varied(&[("eta", 1.2, 2.5)])

@@ -4,6 +4,7 @@ use super::altered::{Altered, half};
 use super::mutant::Mutant;
 use super::siblings::{draws_of, with_alpha, with_alpha_times};
 use crate::bsdf::{Bsdf, Direction, Sample};
+use crate::cause::Cause;
 use crate::models::fresnel;
 use crate::models::microfacet::{Roughness, TorranceSparrow};
 
@@ -66,6 +67,7 @@ pub(super) fn mutants() -> Vec<Mutant> {
                 Altered::of(m).draw(draws_of(rough)).made()
             },
         )
+        .equivalent(&[(Cause::WrongDensity, "sample() draws by another α, which is all that shows")])
         .source("Mitsuba 0.x: a least α, in one function")
         .varied(&[("alpha", 0.005, 0.02)])
         .must_fail(&["goodness-of-fit", "mis", "jacobian", "sensitivity"])

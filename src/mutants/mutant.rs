@@ -31,6 +31,8 @@ type Build = fn(&Parameters, f64) -> Result<Arc<dyn Subject>, String>;
 pub struct Mutant {
     /// Its name, without the prefix of its model's.
     pub name: &'static str,
+    /// Causes that no measurement tells from its own, with the reason.
+    pub equivalent: &'static [(Cause, &'static str)],
     /// What kind of bug it has; none of a negative control: correct code that looks
     /// wrong.
     pub cause: Option<Cause>,
@@ -65,6 +67,7 @@ impl Mutant {
         Self {
             name,
             cause: None,
+            equivalent: &[],
             what,
             source: "",
             of,
@@ -77,6 +80,11 @@ impl Mutant {
             compared: false,
             build,
         }
+    }
+
+    /// No measurement tells these causes from its own, for these reasons.
+    pub(super) fn equivalent(self, equivalent: &'static [(Cause, &'static str)]) -> Self {
+        Self { equivalent, ..self }
     }
 
     /// Where it was found.

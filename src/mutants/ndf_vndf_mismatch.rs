@@ -3,6 +3,7 @@
 use super::altered::{Altered, g2, half};
 use super::mutant::Mutant;
 use crate::bsdf::{Bsdf, Lobe, Sample, Spectrum};
+use crate::cause::Cause;
 use crate::models::microfacet::{NormalSampling, RoughDielectric, TorranceSparrow};
 
 /// What must see that a pdf is another one.
@@ -116,6 +117,7 @@ pub(super) fn mutants() -> Vec<Mutant> {
                     .made()
             },
         )
+        .equivalent(&[(Cause::Support, "directions below the horizon are returned, which is all that shows")])
         .source("bevy solari, bevy#23442")
         .varied(&[("alpha", 0.3, 0.8)])
         .must_fail(&["goodness-of-fit", "normalization", "support", "albedo", "mis", "jacobian"]),

@@ -4,6 +4,7 @@
 use super::altered::Altered;
 use super::mutant::Mutant;
 use crate::bsdf::{Bsdf, Lobe, Sample, Spectrum};
+use crate::cause::Cause;
 use crate::models::microfacet::{GgxMultiscatter, RoughPlastic, TorranceSparrow};
 use crate::models::{Dielectric, Lambert, OrenNayarEon, Phong, Plastic};
 use std::f64::consts::PI;
@@ -18,6 +19,10 @@ fn diffuse() -> Vec<Mutant> {
         Mutant::new("lambert-without-pi", "lambert", "f = ρ, without 1/π", |p, _| {
             Altered::of(Lambert::declared(p)?).eval_times(|_, _, _| PI).made()
         })
+        .equivalent(&[(
+            Cause::ConstantFactor,
+            "f times a constant is the same whichever function it was meant for",
+        )])
         .source("raysect source#349: f lacks 1/π")
         .varied(&[("reflectance", 0.4, 0.95)])
         .must_fail(&["energy"]),
@@ -51,6 +56,7 @@ fn diffuse() -> Vec<Mutant> {
                 .eval(|m, wo, wi, t| Lambert { reflectance: 1.0, ..*m }.eval(wo, wi, t))
                 .made()
         })
+        .equivalent(&[(Cause::Parameter, "a parameter changes nothing, whatever it is called")])
         .source("Tungsten 1b23bda")
         .varied(&[("reflectance", 0.1, 0.95)])
         .must_fail(&["sensitivity"]),
@@ -141,6 +147,10 @@ fn lossless() -> Vec<Mutant> {
             "f is too large by the factor 1 + ε",
             |p, e| Altered::of(OrenNayarEon::declared(p)?).eval_times(move |_, _, _| 1.0 + e).made(),
         )
+        .equivalent(&[(
+            Cause::ConstantFactor,
+            "f times a constant is the same whichever function it was meant for",
+        )])
         .source("any factor")
         .strength(0.01, 1.0, "f is 1 + epsilon times too large")
         .varied(&[("roughness", 0.0, 1.0)])
@@ -151,6 +161,10 @@ fn lossless() -> Vec<Mutant> {
             "f is too small by the factor 1 − ε",
             |p, e| Altered::of(GgxMultiscatter::declared(p)?).eval_times(move |_, _, _| 1.0 - e).made(),
         )
+        .equivalent(&[(
+            Cause::ConstantFactor,
+            "f times a constant is the same whichever function it was meant for",
+        )])
         .source("any factor")
         .strength(0.01, 1.0, "f is 1 − epsilon times too small")
         .varied(&[("alpha", 0.05, 1.0)])

@@ -4,6 +4,7 @@ use super::altered::{Altered, half};
 use super::altered_parts::AlteredNormals;
 use super::mutant::Mutant;
 use crate::bsdf::{Bsdf, Direction, Lobe, NormalDistribution, Sample};
+use crate::cause::Cause;
 use crate::models::microfacet::TorranceSparrow;
 use crate::models::{Lambert, OrenNayar, OrenNayarEon, Phong, Plastic};
 use std::f64::consts::{FRAC_PI_2, FRAC_PI_4, PI, TAU};
@@ -158,6 +159,7 @@ fn out_of_range() -> Vec<Mutant> {
                     .made()
             },
         )
+        .equivalent(&[(Cause::DiscreteLobe, "eval() contains the discrete lobe in its direction")])
         .source("Tungsten 66bda36: delta and continuous lobes mixed")
         .varied(&[("eta", 1.2, 2.5), ("reflectance", 0.1, 1.0)])
         .must_fail(&["sanity", "discrete-lobes"]),

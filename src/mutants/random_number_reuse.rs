@@ -4,6 +4,7 @@ use super::altered::{Altered, R};
 use super::mutant::Mutant;
 use super::siblings::{lobes_of, plastic_by};
 use crate::bsdf::{Bsdf, Lobe};
+use crate::cause::Cause;
 use crate::models::lambert::sample_cosine;
 use crate::models::microfacet::RoughPlastic;
 use crate::models::{Lambert, Phong};
@@ -131,6 +132,7 @@ pub(super) fn mutants() -> Vec<Mutant> {
                     .made()
             },
         )
+        .equivalent(&[(Cause::Numerics, "one number below 1 gives no direction, which is all that shows")])
         .source("pbrt-v3: a stretched number rounds to 1")
         .varied(&[("alpha", 0.1, 0.6), ("reflectance", 0.2, 0.8)])
         // One number in 10⁸ leads to no direction.

@@ -3,6 +3,7 @@
 use super::altered::{Altered, R, g2};
 use super::mutant::Mutant;
 use crate::bsdf::{Bsdf, Lobe};
+use crate::cause::Cause;
 use crate::models::microfacet::TorranceSparrow;
 use crate::models::{OrenNayar, Phong};
 
@@ -91,6 +92,10 @@ pub(super) fn mutants() -> Vec<Mutant> {
                     .made()
             },
         )
+        .equivalent(&[(
+            Cause::Parameter,
+            "nothing is drawn where pdf() is positive, as behind an inverted condition",
+        )])
         .source("rs_pbrt Oren-Nayar, rs_pbrt@fb18bfc")
         .varied(&[("sigma", 0.0, 60.0), ("reflectance", 0.2, 0.8)])
         .must_fail(&["goodness-of-fit", "normalization", "albedo", "mis", "support"]),

@@ -3,6 +3,7 @@
 use super::altered::{Altered, half};
 use super::mutant::Mutant;
 use crate::bsdf::{Direction, Lobe};
+use crate::cause::Cause;
 use crate::models::microfacet::TorranceSparrow;
 use crate::models::{EonSampling, HemisphereSampling, Lambert, OrenNayarEon, Phong};
 use std::f64::consts::TAU;
@@ -93,6 +94,7 @@ pub(super) fn mutants() -> Vec<Mutant> {
                     .made()
             },
         )
+        .equivalent(&[(Cause::WrongDensity, "a wrong map draws another density, whatever the mistake in it")])
         .source("TheRestOfYourLife#9")
         .varied(&[("reflectance", 0.2, 1.0)])
         .must_fail(&["goodness-of-fit", "jacobian"]),

@@ -1,0 +1,78 @@
+//! Ranks claims.
+
+use super::explanation::{self, Claim, Explanation};
+use super::textbook::Textbook;
+use super::view::View;
+use crate::cause::Cause;
+use crate::engine::CaseResult;
+use crate::registry::Parameters;
+
+/// By how many nats a claim must beat those of other causes to be named with
+/// confidence.
+const MARGIN: f64 = 5.0;
+
+/// What a failed check costs that a claim does not explain.
+const UNEXPLAINED: f64 = 20.0;
+
+/// Below this nothing fits.
+const NOTHING_FITS: f64 = -70.0;
+
+/// Above this price a claim says too little to be named with confidence.
+const SAYS_LITTLE: f64 = 17.0;
+
+/// The outcome of a contest.
+#[derive(Clone, Debug)]
+pub struct Verdict {
+    /// Claims, best first, one a cause.
+    pub ranked: Vec<(f64, Claim)>,
+    /// Whether the first is named with confidence.
+    pub confident: bool,
+    /// The published model that was recognised.
+    pub textbook: Option<String>,
+}
+
+impl Verdict {
+    /// The cause named first.
+    pub fn cause(&self) -> Option<Cause> {
+        self.ranked.first().map(|(_, c)| c.cause)
+    }
+}
+
+/// Explains why the cases of one subject failed; `None` where none did. `more` are
+/// explanations besides those that come with gonio, `parameters` what the subject
+/// declares of itself.
+pub fn diagnose<'a, 's: 'a>(
+    cases: &[&'a CaseResult<'s>],
+    more: &[Box<dyn Explanation>],
+    parameters: &Parameters,
+) -> Option<Verdict> {
+    let view = View::gather(cases, parameters)?;
+    let book = Textbook::of(&view);
+    let all = explanation::all();
+    let mut claims: Vec<(f64, Claim)> = all
+        .iter()
+        .chain(more)
+        .flat_map(|e| e.claims(&view, book.as_ref()))
+        .filter(|c| c.covers.iter().any(|check| view.failed.contains(check)))
+        .map(|c| (score(&c, &view), c))
+        .filter(|(score, _)| *score > NOTHING_FITS)
+        .collect();
+    claims.sort_by(|a, b| b.0.total_cmp(&a.0));
+    let mut ranked: Vec<(f64, Claim)> = Vec::new();
+    for claim in claims {
+        if !ranked.iter().any(|(_, c)| c.cause == claim.1.cause) {
+            ranked.push(claim);
+        }
+    }
+    let confident = match &ranked[..] {
+        [] => false,
+        [(_, only)] => only.price < SAYS_LITTLE,
+        [(a, first), (b, _), ..] => a - b >= MARGIN && first.price < SAYS_LITTLE,
+    };
+    Some(Verdict { ranked, confident, textbook: book.map(|b| b.name) })
+}
+
+fn score(claim: &Claim, view: &View) -> f64 {
+    let unexplained = view.failed.iter().filter(|check| !claim.covers.contains(check)).count();
+    claim.ln_likelihood - claim.price - UNEXPLAINED * unexplained as f64
+}

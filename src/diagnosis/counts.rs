@@ -1,0 +1,217 @@
+//! Densities against the draws that were counted.
+
+use crate::bsdf::Direction;
+use crate::evidence::Evidence;
+use crate::statistics::noncentral;
+
+/// Nodes of Gauss and Legendre's rule of three points on [0, 1], and their weights.
+const NODES: [f64; 3] = [0.112_701_665_379_258_3, 0.5, 0.887_298_334_620_741_7];
+const WEIGHTS: [f64; 3] = [5.0 / 18.0, 8.0 / 18.0, 5.0 / 18.0];
+
+/// Counts are compared in groups of cells that expect this many, for what is local,
+/// and in so many groups, for what is spread out.
+const GROUP: f64 = 20.0;
+const GROUPS: f64 = 48.0;
+
+/// RMS relative error that the masses of cells may have from this coarse a rule.
+const SLACK: f64 = 4e-3;
+
+/// The draws of a case by cell, and where densities are evaluated in each.
+pub struct Counts {
+    /// Continuous samples by leaf, of all attempts.
+    pub leaves: Vec<u64>,
+    /// Draws that gave none.
+    pub others: u64,
+    /// Draws in all.
+    pub draws: u64,
+    /// The subject's own masses, as its cubature found them.
+    pub own: Vec<f64>,
+    /// Nine directions a leaf, and the solid angle that each stands for.
+    nodes: Vec<(Direction, f64)>,
+    /// What the rule misses of the subject's own masses, by leaf.
+    correction: Vec<f64>,
+}
+
+/// Pearson's statistic of some groups.
+#[derive(Clone, Copy, Debug, Default)]
+struct Pearson {
+    x2: f64,
+    dof: f64,
+}
+
+impl Pearson {
+    fn and(self, other: Self) -> Self {
+        Self { x2: self.x2 + other.x2, dof: self.dof + other.dof }
+    }
+
+    fn ln_p(&self, slack: f64) -> f64 {
+        if self.dof < 1.0 {
+            return 0.0;
+        }
+        if !self.x2.is_finite() || self.x2 > 1e6 * self.dof {
+            return f64::NEG_INFINITY;
+        }
+        noncentral::ln_sf(self.x2, self.dof, slack)
+    }
+}
+
+/// Counts beside what a density predicts.
+#[derive(Clone, Copy, Debug, Default)]
+pub struct CountTest {
+    local: Pearson,
+    spread: Pearson,
+    /// Noncentrality that the slack of the masses allows.
+    slack: f64,
+}
+
+impl CountTest {
+    /// Both together.
+    pub fn and(self, other: Self) -> Self {
+        Self {
+            local: self.local.and(other.local),
+            spread: self.spread.and(other.spread),
+            slack: self.slack + other.slack,
+        }
+    }
+
+    /// ln of the probability of counts this far off: by the smaller of two p-values,
+    /// doubled.
+    pub fn ln_p(&self) -> f64 {
+        let smaller = self.local.ln_p(self.slack).min(self.spread.ln_p(self.slack));
+        (smaller + std::f64::consts::LN_2).min(0.0)
+    }
+
+    /// ln-likelihood over a perfect fit.
+    pub fn ln_likelihood(&self) -> f64 {
+        let of = |p: &Pearson| -0.5 * (p.x2 - p.dof - self.slack).max(0.0);
+        of(&self.local).min(of(&self.spread))
+    }
+
+    /// Pearson's statistic of the small groups.
+    pub fn x2(&self) -> f64 {
+        self.local.x2
+    }
+
+    /// Whether the density may be right: of hardly any draws it cannot be told.
+    pub fn fits(&self) -> bool {
+        self.local.dof >= 8.0 && self.ln_p() > FITS
+    }
+}
+
+/// ln of the p-value at which a density is given up.
+const FITS: f64 = -9.2;
+
+impl Counts {
+    /// Of a case in which something was counted; `pdf` is the subject's own.
+    pub fn of(evidence: &Evidence, pdf: impl FnOnce(&[Direction]) -> Vec<f64>) -> Option<Self> {
+        let partition = evidence.partition.as_ref()?;
+        let mut leaves = vec![0; partition.len()];
+        let mut draws = 0;
+        for attempt in &evidence.draws {
+            draws += attempt.samples;
+            for (to, n) in leaves.iter_mut().zip(&attempt.counts) {
+                *to += n;
+            }
+        }
+        if draws == 0 {
+            return None;
+        }
+        let counted: u64 = leaves.iter().sum();
+        let chart = partition.chart();
+        let mut nodes = Vec::with_capacity(9 * leaves.len());
+        for leaf in 0..leaves.len() {
+            let cell = partition.leaf_cell(leaf);
+            for (s, ws) in NODES.iter().zip(WEIGHTS) {
+                for (t, wt) in NODES.iter().zip(WEIGHTS) {
+                    let wi = chart.to_direction(cell.at(*s, *t));
+                    nodes.push((wi, ws * wt * cell.area() * chart.steradians(wi)));
+                }
+            }
+        }
+        let own = evidence.integrals.as_ref().map_or(Vec::new(), |i| i.pdf.clone());
+        let mut counts = Self { leaves, others: draws - counted, draws, own, nodes, correction: Vec::new() };
+        let values = pdf(&counts.directions());
+        let by_rule = counts.masses_of(&values);
+        // Densities in question have the peaks of the subject's own, or other ones.
+        let correction = |(own, rule): (&f64, &f64)| {
+            let ratio = own / rule;
+            if (ratio - 1.0).abs() < 0.3 { ratio } else { 1.0 }
+        };
+        counts.correction = counts.own.iter().zip(&by_rule).map(correction).collect();
+        Some(counts)
+    }
+
+    /// Where densities are evaluated.
+    pub fn directions(&self) -> Vec<Direction> {
+        self.nodes.iter().map(|n| n.0).collect()
+    }
+
+    /// Mass of each leaf under a density; NaN where that is NaN at some node and not
+    /// at all of them: a border that the rule does not see runs through the leaf.
+    pub fn masses(&self, mut density: impl FnMut(Direction) -> f64) -> Vec<f64> {
+        let values: Vec<f64> = self.nodes.iter().map(|n| density(n.0)).collect();
+        self.masses_of(&values)
+    }
+
+    /// Mass of each leaf from the density's values at [`directions`](Self::directions).
+    fn masses_of(&self, values: &[f64]) -> Vec<f64> {
+        let sum = |(leaf, (values, nodes)): (usize, (&[f64], &[(Direction, f64)]))| {
+            if values.iter().all(|v| v.is_nan()) {
+                return 0.0;
+            }
+            let sum: f64 = values.iter().zip(nodes).map(|(p, (_, w))| p * w).sum();
+            sum * self.correction.get(leaf).copied().unwrap_or(1.0)
+        };
+        values.chunks_exact(9).zip(self.nodes.chunks_exact(9)).enumerate().map(sum).collect()
+    }
+
+    /// Compares counts with masses; `fitted` numbers were fitted to them. Leaves
+    /// without a number are left out, and then the draws without a sample too.
+    pub fn test(&self, masses: &[f64], fitted: usize) -> CountTest {
+        let n = self.draws as f64;
+        let whole = masses.iter().all(|m| m.is_finite());
+        let total: f64 = masses.iter().filter(|m| m.is_finite()).sum();
+        let group = |size: f64| {
+            let mut groups: Vec<(f64, u64)> = Vec::new();
+            let mut open = (0.0, 0);
+            for (mass, count) in masses.iter().zip(&self.leaves).filter(|(m, _)| m.is_finite()) {
+                open.0 += (n * mass).max(0.0);
+                open.1 += count;
+                if open.0 >= size {
+                    groups.push(open);
+                    open = (0.0, 0);
+                }
+            }
+            let (mut expected, mut observed) = open;
+            let none = n * (1.0 - total);
+            if whole && none >= GROUP {
+                groups.push((none, self.others));
+            } else if whole {
+                expected += none.max(0.0);
+                observed += self.others;
+            }
+            let mut test = Pearson::default();
+            // What is left over is too little to be compared, unless it is not.
+            if expected >= GROUP {
+                groups.push((expected, observed));
+            } else if observed as f64 > expected + 8.0 * (expected + 1.0).sqrt() + 8.0 {
+                test.x2 = (observed as f64 - expected).powi(2) / expected.max(1.0);
+                test.dof = 1.0;
+            }
+            for (expected, observed) in &groups {
+                test.x2 += (*observed as f64 - expected).powi(2) / expected;
+            }
+            test.dof = (test.dof + groups.len() as f64 - 1.0 - fitted as f64).max(0.0);
+            if total > 1.0 + 4.0 * SLACK {
+                // More than everything is no prediction.
+                test.x2 += n * (total - 1.0).powi(2);
+            }
+            test
+        };
+        CountTest {
+            local: group(GROUP),
+            spread: group((n * total / GROUPS).max(GROUP)),
+            slack: n * SLACK * SLACK,
+        }
+    }
+}

@@ -1,0 +1,34 @@
+//! Competing explanations of failed checks, ranked by what was measured.
+//!
+//! A [`View`] is what is known of a failing subject: the evidence of its cases
+//! and a few more values. A [`Textbook`] is a published model that the subject's
+//! sound functions agree with. Each [`Explanation`] makes claims that predict
+//! numbers; a claim that they contradict is dropped, and the [`contest`] ranks
+//! the rest by likelihood with a price for what had to be fitted.
+
+mod compensation;
+mod contest;
+mod counts;
+mod deviation;
+mod discrete;
+mod explanation;
+mod functions;
+mod inputs;
+mod lobes;
+mod mistakes;
+mod parts;
+mod pdf;
+mod sampler;
+mod shares;
+mod support;
+mod textbook;
+mod value;
+mod view;
+mod weight;
+
+pub use contest::{Verdict, diagnose};
+pub use counts::{CountTest, Counts};
+pub use explanation::{Claim, Explanation};
+pub use parts::{At, Parts};
+pub use textbook::{Lobe, Textbook};
+pub use view::{Point, Seen, View};

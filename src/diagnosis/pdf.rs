@@ -1,0 +1,284 @@
+//! What pdf() has wrong, where sample() and eval() say what it must be.
+
+use super::counts::{CountTest, Counts};
+use super::deviation::{Function, Region, equals, fit, from_textbook};
+use super::explanation::{COUNTED_NUMBER, Claim, EXACT_NUMBER};
+use super::mistakes::{Mistake, PDF};
+use super::parts::{At, Parts};
+use super::textbook::Textbook;
+use super::view::{Point, Seen, View};
+use crate::bsdf::{Direction, Transport};
+use crate::cause::Cause;
+use crate::models::microfacet::{Distribution, Roughness};
+
+/// Cases whose counts are compared: those that fail most come first.
+const COUNTED: usize = 4;
+
+/// The counts of some cases, with their places in the view.
+pub fn counts(view: &View) -> Vec<(usize, Counts)> {
+    let counted = |(k, seen): (usize, &Seen)| {
+        let pdf = |wi: &[Direction]| view.pdf(seen.wo, wi, seen.transport);
+        Some((k, Counts::of(seen.evidence, pdf)?))
+    };
+    view.cases.iter().enumerate().filter_map(counted).take(COUNTED).collect()
+}
+
+/// Whether the draws follow the textbook's density.
+pub fn follows(view: &View, book: &Textbook, counts: &[(usize, Counts)]) -> CountTest {
+    let mut total = CountTest::default();
+    for (k, c) in counts {
+        let wo = view.cases[*k].wo;
+        total = total.and(c.test(&c.masses(|wi| book.pdf(wo, wi)), 0));
+    }
+    total
+}
+
+/// Claims about pdf().
+pub fn claims(view: &View, book: Option<&Textbook>) -> Vec<Claim> {
+    if !view.fails_any(&[
+        "goodness-of-fit",
+        "normalization",
+        "jacobian",
+        "support",
+        "returned-pdf",
+        "reference",
+    ]) {
+        return Vec::new();
+    }
+    let counts = counts(view);
+    let Some(book) = book else { return of_counts(view, &counts) };
+    if book.agrees.by_pdf() {
+        return Vec::new();
+    }
+    let regions = from_textbook(view, book, Function::Pdf);
+    if regions.is_empty() {
+        return Vec::new();
+    }
+    let follows = follows(view, book, &counts);
+    let mut claims: Vec<Claim> =
+        regions.iter().flat_map(|region| PDF.iter().filter_map(|m| of_region(m, region, "pdf()"))).collect();
+    claims.extend(whole_functions(view, book));
+    claims.extend(another_number(view, book));
+    // Where the draws do not follow the textbook either, something else is wrong too.
+    for claim in &mut claims {
+        claim.ln_p = Some(follows.ln_p());
+        if !follows.fits() && claim.cause != Cause::RefractionJacobian {
+            claim.price += 10.0;
+        }
+    }
+    claims
+}
+
+/// The claim that a factor explains a region, where it does.
+pub fn of_region(m: &Mistake, region: &Region, function: &str) -> Option<Claim> {
+    use super::deviation::Free;
+    let fit = fit(&region.ratios, m.factor, m.free)?;
+    let place = if region.name.is_empty() { String::new() } else { format!("{}, ", region.name) };
+    let easy = (fit.power - (2.0 * fit.power).round() / 2.0).abs() < 1e-9;
+    let fitted = match m.free {
+        Free::Nothing => 0.0,
+        Free::Power if easy => 1.0,
+        Free::Power | Free::Scale => EXACT_NUMBER,
+    };
+    let number = match m.free {
+        Free::Nothing => String::new(),
+        Free::Power => format!(" (to the power {:.4})", fit.power),
+        Free::Scale => format!(" ({:.6})", fit.scale),
+    };
+    // A part of the points costs a choice.
+    let part = if region.name.is_empty() { 0.0 } else { 2.0 };
+    let statement = format!("{place}{function} {}{number}", m.what);
+    Some(
+        Claim::new(m.cause, statement, m.repair)
+            .likelihood(fit.ln_likelihood())
+            .price(1.0 + fitted + part)
+            .because(format!("this {}", fit.words())),
+    )
+}
+
+/// pdf() at every point is what `predicted` makes of the textbook.
+fn whole(
+    view: &View,
+    book: &Textbook,
+    predicted: impl Fn(&Seen, &Point) -> Option<f64>,
+) -> Option<super::deviation::Fit> {
+    equals(view, |_, p| p.pdf, |s, p| book.pdf(s.wo, p.wi), predicted)
+}
+
+/// Mistakes that are no factor.
+fn whole_functions(view: &View, book: &Textbook) -> Vec<Claim> {
+    let mut claims = Vec::new();
+    let up = |wo: Direction, w: Direction| if wo.z < 0.0 { w.flipped() } else { w };
+    let mut add = |fit: Option<super::deviation::Fit>, cause, statement: &str, repair: &str| {
+        if let Some(fit) = fit {
+            let claim = Claim::new(cause, statement, repair).likelihood(fit.ln_likelihood());
+            claims.push(claim.because(format!("this {}", fit.words())));
+        }
+    };
+    add(
+        whole(view, book, |seen, p| Some(book.pdf(p.wi, seen.wo))),
+        Cause::SwappedArguments,
+        "pdf(wo, wi) is pdf(wi, wo): its arguments are exchanged",
+        "exchange them at the call or in the signature: wo is given, wi was drawn",
+    );
+    if book.parts.eta.is_some() && view.cases.iter().any(|c| c.wo.z < 0.0) {
+        add(
+            whole(view, book, |seen, p| Some(book.pdf(up(seen.wo, seen.wo), up(seen.wo, p.wi)))),
+            Cause::EtaSide,
+            "pdf() takes η and not 1/η where wo is inside",
+            "invert η where cos θo < 0, before the half vector and the Fresnel term",
+        );
+    }
+    if view.cases.iter().any(|c| c.wo.z < 0.0) {
+        add(
+            whole(view, book, |seen, p| {
+                let wo = if seen.wo.z < 0.0 { seen.wo.mirrored() } else { seen.wo };
+                Some(book.pdf(wo, p.wi))
+            }),
+            Cause::Frame,
+            "seen from behind, pdf() is turned by 180° about the normal: wo is negated where only its z must change sign",
+            "flip z alone, of both directions",
+        );
+    }
+    claims
+}
+
+/// The model with another number.
+fn another_number(view: &View, book: &Textbook) -> Vec<Claim> {
+    let mut claims = Vec::new();
+    for (name, value) in book.numbers() {
+        let loss = |book: &Textbook| {
+            let mut off: Vec<f64> = Vec::new();
+            for seen in &view.cases {
+                for p in seen.points.iter().step_by(6) {
+                    let theirs = book.pdf(seen.wo, p.wi);
+                    if theirs > 0.0 && p.pdf > 0.0 {
+                        off.push((p.pdf / theirs).ln().abs());
+                    }
+                }
+            }
+            off.sort_by(f64::total_cmp);
+            off.get(off.len() / 2).copied().unwrap_or(f64::INFINITY)
+        };
+        let Some((found, _)) = nearest(book, &name, value, loss) else { continue };
+        let Some(other) = book.with(&name, found) else { continue };
+        if let Some(fit) = whole(view, book, |seen, p| Some(other.pdf(seen.wo, p.wi))) {
+            claims.push(
+                Claim::new(
+                    Cause::WrongDensity,
+                    format!("pdf() is that of {name} = {found:.6}, where {name} = {value} is declared"),
+                    format!("give pdf() the same {name} as sample(), after the same mapping and clamping"),
+                )
+                .likelihood(fit.ln_likelihood())
+                .price(EXACT_NUMBER)
+                .because(format!("this {}", fit.words())),
+            );
+        }
+    }
+    claims
+}
+
+/// The value of a parameter near which `loss` is least; `None` where it changes
+/// nothing.
+pub fn nearest(
+    book: &Textbook,
+    name: &str,
+    value: f64,
+    loss: impl Fn(&Textbook) -> f64,
+) -> Option<(f64, f64)> {
+    let at = |ln: f64| {
+        let x = if value == 0.0 { ln.exp() * 0.1 } else { value * ln.exp() };
+        (x, book.with(name, x).map_or(f64::INFINITY, |b| loss(&b)))
+    };
+    const STEP: f64 = 0.25;
+    // From 1/150 to 150 times as large: degrees taken for radians are within.
+    let steps: Vec<(f64, f64)> = (-20..=20).map(|k| f64::from(k) * STEP).map(|ln| (ln, at(ln).1)).collect();
+    let here = steps[20].1;
+    let best = steps.iter().filter(|s| s.1.is_finite()).min_by(|a, b| a.1.total_cmp(&b.1))?.0;
+    if steps.iter().filter(|s| s.1.is_finite()).all(|s| (s.1 - here).abs() < 1e-12) {
+        return None;
+    }
+    Some(at(least(best - STEP, best + STEP, 40, |ln| at(ln).1)))
+}
+
+/// Where a function of one number is least, by golden sections.
+pub fn least(mut lo: f64, mut hi: f64, sections: usize, f: impl Fn(f64) -> f64) -> f64 {
+    const GOLDEN: f64 = 0.381_966_011_250_105;
+    let (mut a, mut b) = (lo + GOLDEN * (hi - lo), hi - GOLDEN * (hi - lo));
+    let (mut fa, mut fb) = (f(a), f(b));
+    for _ in 0..sections {
+        if fa < fb {
+            (hi, b, fb) = (b, a, fa);
+            a = lo + GOLDEN * (hi - lo);
+            fa = f(a);
+        } else {
+            (lo, a, fa) = (a, b, fb);
+            b = hi - GOLDEN * (hi - lo);
+            fb = f(b);
+        }
+    }
+    0.5 * (lo + hi)
+}
+
+/// Without a textbook: factors that make the counts fit.
+fn of_counts(view: &View, counts: &[(usize, Counts)]) -> Vec<Claim> {
+    let parts = declared(view);
+    let mut claims = Vec::new();
+    if counts.len() < 2 {
+        return claims;
+    }
+    for m in PDF {
+        let test = |power: f64, scale: f64, fitted: usize| {
+            let mut total = CountTest::default();
+            for (k, c) in counts {
+                let (wo, t) = (view.cases[*k].wo, view.cases[*k].transport);
+                let directions = c.directions();
+                let repaired = |(wi, p): (&Direction, f64)| {
+                    let at = At::new(&parts, wo, *wi, Transport::Radiance);
+                    let factor = (m.factor)(&at).map_or(1.0, |f| scale * f.powf(power));
+                    if p == 0.0 { 0.0 } else { p / factor }
+                };
+                let values: Vec<f64> =
+                    directions.iter().zip(view.pdf(wo, &directions, t)).map(repaired).collect();
+                let mut values = values.into_iter();
+                let masses = c.masses(|_| values.next().unwrap_or(0.0));
+                total = total.and(c.test(&masses, fitted));
+            }
+            total
+        };
+        let (found, cost) = match m.free {
+            super::deviation::Free::Nothing => (test(1.0, 1.0, 0), 0.0),
+            super::deviation::Free::Power => (test(1.0, 1.0, 0), 0.0),
+            super::deviation::Free::Scale => {
+                let (mass, seen) = counts.iter().fold((0.0, 0.0), |(m, s), (_, c)| {
+                    let drawn = c.leaves.iter().sum::<u64>() as f64 / c.draws as f64;
+                    (m + c.own.iter().sum::<f64>(), s + drawn)
+                });
+                (test(1.0, mass / seen, 1), COUNTED_NUMBER)
+            }
+        };
+        if found.fits() {
+            claims.push(
+                Claim::new(m.cause, format!("pdf() {}", m.what), m.repair)
+                    .likelihood(found.ln_likelihood())
+                    .price(1.0 + cost)
+                    .p(found.ln_p()),
+            );
+        }
+    }
+    claims
+}
+
+/// Parts from parameters and claims by their names.
+fn declared(view: &View) -> Parts {
+    let roughness = view.number("alpha").map(|x| {
+        let y = view.number("alpha_y").filter(|y| *y > 0.0).unwrap_or(x);
+        Roughness { x, y }
+    });
+    Parts {
+        distribution: roughness.map(Distribution::ggx),
+        masking: None,
+        fresnel: None,
+        eta: view.description.claims.eta.or_else(|| view.number("eta")),
+    }
+}
