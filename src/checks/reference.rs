@@ -92,7 +92,8 @@ impl Check for Reference {
         if continuous == 0.0 && draws.continuous() == 0 {
             return Outcome::new(Verdict::Pass, format!("{held}; neither has a continuous lobe")).into();
         }
-        match against(evidence, partition, &reference.masses, draws, terms) {
+        let slack = terms.mean_tolerance * continuous + reference.mass_error;
+        match against(evidence, partition, (&reference.masses, slack), draws, terms) {
             Judgement::Outcome(outcome) => {
                 let message = format!("{held}; against its pdf: {}", outcome.message);
                 Outcome { message, ..*outcome }.into()

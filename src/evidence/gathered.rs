@@ -375,6 +375,7 @@ impl<'a> Gatherer<'a> {
             let setup = Setup { claims, ..self.setup.clone() };
             let integrals = Integrals::gather(&other, &setup, partition, &pilot, draws, MOST_EVALUATIONS)?;
             comparison.unreliable = integrals.reliable().err();
+            comparison.mass_error = integrals.mass().1;
             comparison.masses = integrals.pdf;
         }
         self.evidence.reference = Some(comparison);

@@ -285,6 +285,9 @@ pub struct Comparison {
     pub pdf: Tally,
     /// ∫ of the other's pdf by leaf, which the draws must follow.
     pub masses: Vec<f64>,
+    /// The error of their sum.
+    #[serde(default)]
+    pub mass_error: f64,
     /// Why these masses cannot be relied on, if so.
     pub unreliable: Option<String>,
     /// Why the two cannot be compared, if so.
@@ -303,11 +306,8 @@ impl Comparison {
         let mut found = Self {
             name: name.into(),
             eval: Tally::new(setup.tolerance()),
-            table: None,
             pdf: Tally::new(setup.tolerance()),
-            masses: Vec::new(),
-            unreliable: None,
-            incomparable: None,
+            ..Self::default()
         };
         if other.channels() != meter.channels() {
             found.incomparable =
