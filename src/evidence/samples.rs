@@ -48,6 +48,9 @@ pub struct SampleIdentities {
     pub returned_pdf: Tally,
     /// pdf(wo, wi) > 0.
     pub zero_pdf: Tally,
+    /// A continuous sample that carries light leaves on the side that its flags tell.
+    #[serde(default)]
+    pub side: Tally,
     /// The most frequent direction among continuous samples, and its share.
     pub repeated: Option<(Direction, f64)>,
     /// pdf() and eval() do not stand out at the directions of discrete lobes.
@@ -62,6 +65,7 @@ impl SampleIdentities {
             weight_other: Tally::new(setup.tolerance()),
             returned_pdf: Tally::new(setup.tolerance()),
             zero_pdf: Tally::new(0.0),
+            side: Tally::new(0.0),
             ..Self::default()
         };
         let mut pilot = Pilot::default();
@@ -91,6 +95,13 @@ impl SampleIdentities {
             for (row, &k) in rows.iter().enumerate() {
                 let wi = samples.wi[k];
                 let place = || Place::pair(setup.wo, wi).drawn_by(&u[k * d..(k + 1) * d]);
+                // Off the support, a draw of weight 0 says nothing.
+                if samples.weight_of(k).iter().any(|w| *w > 0.0) {
+                    let wrong = contradicts_side(samples.lobe[k], setup.wo, wi);
+                    found.side.look(if wrong { 1.0 } else { 0.0 }, || {
+                        place().value("flags", f64::from(samples.lobe[k].0))
+                    });
+                }
                 if !has.pdf {
                     continue;
                 }
@@ -151,6 +162,12 @@ impl SampleIdentities {
     pub fn suggests_other_cosine(&self) -> bool {
         self.weight.checked > 0 && self.weight.share() > 0.9 && !self.weight_other.is_broken()
     }
+}
+
+/// Whether a lobe is flagged as one side's alone, and `wi` lies on the other.
+fn contradicts_side(lobe: Lobe, wo: Direction, wi: Direction) -> bool {
+    let told = lobe.contains(Lobe::REFLECTION);
+    told != lobe.contains(Lobe::TRANSMISSION) && told != wi.same_side(wo)
 }
 
 impl Pilot {
