@@ -79,7 +79,7 @@ impl Pairs {
             found.adjoint = Some(adjoint(meter, setup, &wi)?);
         }
         for draw in &pilot.discrete {
-            found.reverse(meter, setup, draw.wi, &draw.throughput)?;
+            found.reverse(meter, setup, draw.wi, &draw.throughput())?;
         }
         Ok(found)
     }
