@@ -60,6 +60,7 @@ const GLASS: &[(GlassBug, Expected)] = &[
         (&["goodness-of-fit", "normalization"], &["support", "jacobian", "albedo", "mis"]),
     ),
     (GlassBug::FresnelAtNormal, (&["reciprocity"], &[])),
+    (GlassBug::FlaggedReflection, (&["discrete-lobes"], &[])),
     // Both modes are claimed, and one is not there.
     (GlassBug::OneScale, (&["reciprocity"], &[])),
     (GlassBug::OneScaleAsConvention, (&[], &[])),

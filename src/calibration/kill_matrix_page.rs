@@ -128,10 +128,41 @@ impl Part for KillMatrix {
             let met = self.mutants().filter_map(|r| r.grids.get(*name));
             let (caught, of) =
                 met.fold((0, 0), |(n, m), (rejected, _)| (n + usize::from(*rejected > 0), m + 1));
-            format!(
-                "  the fixed grid of {name} rejects {caught} of the {of} mutants that have a pdf and a sampler"
-            )
+            // A quick run leaves them out.
+            (of > 0).then(|| {
+                format!(
+                    "  the fixed grid of {name} rejects {caught} of the {of} mutants that have a pdf and a sampler"
+                )
+            })
         };
-        std::iter::once(format!("kill matrix: {}", self.told())).chain(GRIDS.iter().map(grid)).collect()
+        let told = format!("kill matrix: {}", self.told());
+        std::iter::once(told).chain(GRIDS.iter().filter_map(grid)).collect()
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use crate::cause::Cause;
+    use std::collections::BTreeMap;
+
+    #[test]
+    fn grids_that_did_not_run_are_not_told() {
+        let row = |grids| Row {
+            mutant: "mutant-x".into(),
+            cause: Some(Cause::Weight),
+            what: String::new(),
+            of: String::new(),
+            source: String::new(),
+            strength: None,
+            cases: 1,
+            samples: 0,
+            checks: BTreeMap::new(),
+            grids,
+        };
+        let summary = |grids| KillMatrix { suite: "quick".into(), rows: vec![row(grids)] }.summary();
+        assert_eq!(summary(BTreeMap::new()).len(), 1);
+        let told = summary(BTreeMap::from([(NORI.name.to_string(), (1, 5))]));
+        assert!(told.len() == 2 && told[1].contains("nori rejects 1 of the 1 mutants"), "{told:?}");
     }
 }

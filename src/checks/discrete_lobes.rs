@@ -6,7 +6,7 @@ use crate::evidence::{Evidence, Measurement, Place, refracted};
 use crate::statistics::{binomial, normal};
 
 /// Probabilities, mirror and Snell directions, weights; flags say what the
-/// lobe is; pdf and eval say nothing of it.
+/// lobe is, of continuous ones too; pdf and eval say nothing of it.
 pub struct DiscreteLobes;
 
 /// Continuous samples that repeat bit for bit in more than this share of draws
@@ -63,6 +63,11 @@ impl Check for DiscreteLobes {
                 Some(place),
                 Some(Effect::exact("share of repeated samples", share, REPEATED)),
             );
+        }
+        if samples.side.is_broken() {
+            let breach =
+                "a sample flagged `reflection` leaves on the other side, or `transmission` on that of wo";
+            return Outcome::of_tally(&samples.side, "the side that flags tell", breach).into();
         }
         let Some(draws) = evidence.draws.get(terms.attempt) else { return Judgement::Missing };
         if draws.discrete.is_empty() {

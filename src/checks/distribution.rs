@@ -37,9 +37,9 @@ impl Law {
         self.found.value - 1.0
     }
 
-    /// Off for certain, whatever the cubature's error.
-    fn is_broken(&self, tolerance: f64) -> bool {
-        !(self.off().abs() - self.found.error <= tolerance)
+    /// Off for certain, were the cubature off by this many times its error.
+    fn is_broken(&self, certainty: f64, tolerance: f64) -> bool {
+        !(self.off().abs() - certainty * self.found.error <= tolerance)
     }
 }
 
@@ -146,8 +146,8 @@ impl Check for Distribution {
         if facets.below.is_broken() {
             return Outcome::of_tally(&facets.below, "D = 0 below the horizon", "no normal is there").into();
         }
-        if facets.reliable(tolerance).is_ok() {
-            let mut broken = laws.iter().filter(|l| l.is_broken(tolerance));
+        if let Ok(certainty) = facets.certainty(tolerance) {
+            let mut broken = laws.iter().filter(|l| l.is_broken(certainty, tolerance));
             if let Some(first) = broken.next() {
                 let mut message =
                     format!("{} = {:.5} where it must be 1, {}", first.name, first.found.value, first.breach);

@@ -75,10 +75,12 @@ impl Check for Energy {
         if let (Some(next), true) = (terms.next, evidence.description.has.sample) {
             return Judgement::More(next);
         }
-        if let Err(reason) = integrals.reliable() {
-            return Outcome::inconclusive(reason).into();
-        }
+        let certainty = match integrals.certainty() {
+            Ok(certainty) => certainty,
+            Err(reason) => return Outcome::inconclusive(reason).into(),
+        };
         let Some((channel, flux, error)) = flux(evidence, false) else { return Judgement::Missing };
+        let error = certainty * error;
         let tolerance = tolerance(evidence.description.precision);
         // A table names the patch, and where its largest sum is.
         let given = evidence.given.as_ref().map_or_else(String::new, |given| format!(" ({given})"));
@@ -102,6 +104,9 @@ impl Check for Energy {
             let message = format!("flux {flux:.5} of channel {name} leaves where 1 arrives{given}{missing}");
             let worst = Some(Place { wo: evidence.wo, ..Place::default() }.value("flux", flux));
             return Outcome { verdict: Verdict::Fail, message, worst, ..outcome }.into();
+        }
+        if let Err(reason) = integrals.reliable() {
+            return Outcome::inconclusive(reason).into();
         }
         outcome.into()
     }

@@ -39,13 +39,25 @@ struct Cells {
 const OUTER: usize = 2;
 
 impl Cells {
-    fn new(partition: &Partition, masses: &[f64], draws: &Draws) -> Self {
+    /// Z may be off by `slack`, which may be more than all of 1 − Z: within it, as
+    /// many draws are expected to come without a continuous sample as did.
+    fn new(partition: &Partition, masses: &[f64], draws: &Draws, slack: f64) -> Self {
         let inner_mass = partition.sum_up(masses);
         let inner_counts = partition.sum_up(&draws.counts);
-        let rest = (1.0 - inner_mass[0]).max(0.0);
+        let without = draws.samples - inner_counts[0];
+        let told = inner_mass[0];
+        let met = without as f64 / draws.samples.max(1) as f64;
+        let rest = met.clamp((1.0 - told - slack).max(0.0), (1.0 - told + slack).max(0.0));
+        // Exactly 1 without slack.
+        let scale = if slack > 0.0 && told > slack {
+            ((1.0 - rest) / told).clamp(1.0 - slack / told, 1.0 + slack / told)
+        } else {
+            1.0
+        };
+        let inner_mass: Vec<f64> = inner_mass.iter().map(|m| m * scale).collect();
         let mut children = vec![Some((1, OUTER)), None];
         let mut mass = vec![inner_mass[0] + rest, rest];
-        let mut counts = vec![draws.samples, draws.samples - inner_counts[0]];
+        let mut counts = vec![draws.samples, without];
         for node in 0..partition.nodes() {
             children.push(partition.children(node).map(|[l, r]| (l + OUTER, r + OUTER)));
         }
@@ -88,7 +100,7 @@ pub fn level_p_values(evidence: &Evidence) -> Vec<f64> {
     else {
         return Vec::new();
     };
-    let Some(tree) = Cells::new(partition, &integrals.pdf, draws).shape() else { return Vec::new() };
+    let Some(tree) = Cells::new(partition, &integrals.pdf, draws, 0.0).shape() else { return Vec::new() };
     // A level with few terms is discrete where counts are small; 20 per cell and
     // a few cells make it smooth.
     haar_levels(&tree.haar())
@@ -107,7 +119,7 @@ pub fn strict_ln_p(evidence: &Evidence) -> Option<f64> {
     if draws.zero_pdf.is_broken() {
         return Some(f64::NEG_INFINITY);
     }
-    let levels = least_ln_p(&levels(&Cells::new(partition, &integrals.pdf, draws).raw()?));
+    let levels = least_ln_p(&levels(&Cells::new(partition, &integrals.pdf, draws, 0.0).raw()?));
     let ((mass, error), valid) = (integrals.mass(), draws.continuous());
     let mass = if mass - error > 1.0 {
         f64::NEG_INFINITY
@@ -127,9 +139,9 @@ pub fn true_effects(evidence: &Evidence, true_masses: &[f64]) -> Vec<(f64, f64)>
     else {
         return Vec::new();
     };
-    let told = Cells::new(partition, &integrals.pdf, draws);
+    let told = Cells::new(partition, &integrals.pdf, draws, 0.0);
     let Some(tree) = told.raw() else { return Vec::new() };
-    let right = Cells::new(partition, true_masses, draws);
+    let right = Cells::new(partition, true_masses, draws, 0.0);
     let at = |depth: u32| {
         let cells = level_cut(&tree, depth);
         let term = |k: &usize| {
@@ -197,22 +209,23 @@ impl Check for GoodnessOfFit {
             let reason = "there is no continuous lobe: pdf is 0 everywhere and no continuous sample came";
             return Outcome::skipped(reason).into();
         }
-        against(evidence, partition, &integrals.pdf, draws, terms)
+        let slack = integrals.slack(terms.mean_tolerance);
+        against(evidence, partition, (&integrals.pdf, slack), draws, terms)
     }
 }
 
 /// Judges draws against the masses of the leaves, the subject's own or those
-/// of a reference.
+/// of a reference, and by how much their sum may be off.
 pub(super) fn against(
     evidence: &Evidence,
     partition: &Partition,
-    masses: &[f64],
+    (masses, slack): (&[f64], f64),
     draws: &Draws,
     terms: &Terms,
 ) -> Judgement {
     let n = draws.samples;
-    let cells = Cells::new(partition, masses, draws);
-    let (Some(raw), Some(shape)) = (cells.raw(), cells.shape()) else {
+    let cells = [slack, 0.0].map(|slack| Cells::new(partition, masses, draws, slack));
+    let (Some(raw), Some(strict), Some(shape)) = (cells[0].raw(), cells[1].raw(), cells[1].shape()) else {
         return Outcome::inconclusive("the integrals of pdf are not a distribution over cells").into();
     };
     let (raw_levels, shape_levels) = (levels(&raw), levels(&shape));
@@ -236,7 +249,7 @@ pub(super) fn against(
 
     let (x2, dof, _) = worst_level;
     let own_effect = effect::root_d(x2, dof.max(1.0), n);
-    let (shape_p, raw_p) = (least_ln_p(&shape_levels), least_ln_p(&raw_levels));
+    let (shape_p, raw_p) = (least_ln_p(&shape_levels), least_ln_p(&levels(&strict)));
     let largest = haar_largest(&raw.haar());
     let place = largest.map(|h| deviation(partition, &raw, &h)).unwrap_or_default();
     let outcome = Outcome {

@@ -42,12 +42,12 @@ impl Check for Normalization {
         }
         let Some(draws) = evidence.draws.get(terms.attempt) else { return Judgement::Missing };
         let (n, valid) = (draws.samples, draws.continuous());
-        let (mass, error) = integrals.mass();
+        let mass = integrals.mass().0;
         let share = valid as f64 / n as f64;
         if valid == 0 && mass == 0.0 {
             return Outcome::skipped("there is no continuous lobe").into();
         }
-        let slack = terms.mean_tolerance * mass + error;
+        let slack = integrals.slack(terms.mean_tolerance);
         let (low, high) = (mass - slack, mass + slack);
         let ln_p = binomial::ln_tail_beyond(valid, n, low, high);
         // Either side could have been the one.

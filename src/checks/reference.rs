@@ -5,8 +5,8 @@ use super::outcome::{Check, Effect, Judgement, Outcome, Terms, Verdict, needs_de
 use crate::bsdf::{Description, SubjectKind};
 use crate::evidence::{Evidence, Measurement, Resemblance};
 
-/// Equals the subject that the suite names as its `reference`: eval and pdf
-/// pointwise, samples in distribution. A table equals it as far as its nodes
+/// Equals the subject that the suite names as its `reference`: eval, pdf and discrete
+/// lobes one by one, samples in distribution. A table equals it as far as its nodes
 /// resolve it: eval alone is compared then, by RMS over the light.
 pub struct Reference;
 
@@ -41,7 +41,7 @@ impl Check for Reference {
     }
 
     fn hypothesis(&self) -> &'static str {
-        "equals the suite's reference: eval and pdf pointwise, samples in distribution"
+        "equals the suite's reference: eval, pdf and discrete lobes one by one, samples in distribution"
     }
 
     fn needs(&self) -> &'static [Measurement] {
@@ -69,16 +69,23 @@ impl Check for Reference {
         if let Some(table) = &reference.table {
             return resembles(table, &reference.name, evidence, terms).into();
         }
-        for (tally, function) in [(&reference.eval, "eval"), (&reference.pdf, "pdf")] {
+        for (tally, what, breach) in [
+            (&reference.eval, "eval", "the two differ"),
+            (&reference.pdf, "pdf", "the two differ"),
+            (&reference.discrete, "the discrete lobes", "direction, probability or weight differ"),
+        ] {
             if tally.is_broken() {
-                let identity = format!("{function} of {}", reference.name);
-                return Outcome::of_tally(tally, &identity, "the two differ").into();
+                let identity = format!("{what} of {}", reference.name);
+                return Outcome::of_tally(tally, &identity, breach).into();
             }
         }
-        let held = format!(
+        let mut held = format!(
             "equals {} at {} values and {} densities",
             reference.name, reference.eval.checked, reference.pdf.checked
         );
+        if reference.discrete.checked > 0 {
+            held.push_str(", and in its discrete lobes");
+        }
         let (Some(partition), Some(draws)) = (&evidence.partition, evidence.draws.get(terms.attempt)) else {
             return Outcome::new(Verdict::Pass, held).into();
         };
@@ -92,7 +99,8 @@ impl Check for Reference {
         if continuous == 0.0 && draws.continuous() == 0 {
             return Outcome::new(Verdict::Pass, format!("{held}; neither has a continuous lobe")).into();
         }
-        match against(evidence, partition, &reference.masses, draws, terms) {
+        let slack = terms.mean_tolerance * continuous + reference.mass_error;
+        match against(evidence, partition, (&reference.masses, slack), draws, terms) {
             Judgement::Outcome(outcome) => {
                 let message = format!("{held}; against its pdf: {}", outcome.message);
                 Outcome { message, ..*outcome }.into()

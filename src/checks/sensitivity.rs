@@ -21,6 +21,19 @@ const FLOOR: f64 = 1e-3;
 /// Flux that an interface with equal indices may reflect.
 const TRANSPARENT: f64 = 1e-9;
 
+/// Where samples gather, in words; `median` is infinite where none came.
+fn narrowed(parameter: &str, value: &str, median: f64, kind: SubjectKind) -> String {
+    let centre = match kind {
+        SubjectKind::Distribution => "normal",
+        _ => "mirror",
+    };
+    if median.is_infinite() {
+        return format!("`{parameter}` = {value}: no sample came, so that none is near the {centre}");
+    }
+    let degrees = median.to_degrees();
+    format!("`{parameter}` = {value}: the median sample is {degrees:.3}° off the {centre}")
+}
+
 impl Check for Sensitivity {
     fn id(&self) -> &'static str {
         "sensitivity"
@@ -68,16 +81,7 @@ impl Check for Sensitivity {
         for v in variations {
             let (message, found, tolerance) = match &v.limit {
                 Some(Limit::Narrow { median, roughness }) => (
-                    format!(
-                        "`{}` = {}: the median sample is {:.3}° off the {}",
-                        v.parameter,
-                        v.to,
-                        median.0.to_degrees(),
-                        match evidence.description.kind {
-                            SubjectKind::Distribution => "normal",
-                            _ => "mirror",
-                        }
-                    ),
+                    narrowed(&v.parameter, &v.to, median.0, evidence.description.kind),
                     median.0,
                     NARROW * roughness.max(FLOOR),
                 ),
@@ -100,5 +104,17 @@ impl Check for Sensitivity {
             message.push_str(", front and back agree");
         }
         Outcome::new(Verdict::Pass, message).into()
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn samples_that_do_not_come_have_no_angle() {
+        let told = |median| narrowed("alpha", "0.001", median, SubjectKind::Bsdf);
+        assert_eq!(told(f64::INFINITY), "`alpha` = 0.001: no sample came, so that none is near the mirror");
+        assert_eq!(told(0.1), "`alpha` = 0.001: the median sample is 5.730° off the mirror");
     }
 }

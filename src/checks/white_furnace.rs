@@ -43,10 +43,12 @@ impl Check for WhiteFurnace {
         if let (Some(next), true) = (terms.next, evidence.description.has.sample) {
             return Judgement::More(next);
         }
-        if let Err(reason) = integrals.reliable() {
-            return Outcome::inconclusive(reason).into();
-        }
+        let certainty = match integrals.certainty() {
+            Ok(certainty) => certainty,
+            Err(reason) => return Outcome::inconclusive(reason).into(),
+        };
         let Some((channel, flux, error)) = flux(evidence, true) else { return Judgement::Missing };
+        let error = certainty * error;
         let off = flux - 1.0;
         let outcome = Outcome {
             effect: Some(Effect::interval("flux − 1", (off, off - error, off + error), TOLERANCE)),
@@ -57,6 +59,9 @@ impl Check for WhiteFurnace {
         if off.abs() - error > TOLERANCE {
             let message = format!("flux {flux:.5} where 1 is claimed");
             return Outcome { verdict: Verdict::Fail, message, ..outcome }.into();
+        }
+        if let Err(reason) = integrals.reliable() {
+            return Outcome::inconclusive(reason).into();
         }
         outcome.into()
     }

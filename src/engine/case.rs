@@ -17,9 +17,16 @@ use std::time::Instant;
 const FIRST_LOOK: u64 = 1 << 14;
 const LOOK_FACTOR: u64 = 4;
 
-/// A confirmation looks at N, 2N, 4N and 8N draws, N being where the suspicion
-/// arose (METHOD §3).
-const CONFIRMATION: [u64; 4] = [1, 2, 4, 8];
+/// Looks of a confirmation, the last with half of its budget.
+const CONFIRMATION: usize = 4;
+
+/// A confirmation looks at N, 2N, 4N and 8N draws, N being where the suspicion arose
+/// (METHOD §3); the last at the `cap` of the case, where that is more: an early look
+/// may have been lucky with an error that only all draws show.
+fn confirmation(suspected_at: u64, cap: u64) -> [u64; CONFIRMATION] {
+    let n = suspected_at;
+    [n, 2 * n, 4 * n, (8 * n).max(cap)]
+}
 
 /// RMS relative cell error that counts as wrong where the suite does not say
 /// (METHOD §3): what a textbook implementation in this precision reaches. A table
@@ -217,28 +224,27 @@ impl<'r, 'a> Run<'r, 'a> {
         self.gatherer.into_evidence()
     }
 
-    /// Follows suspicions with other random numbers. Each check looks at
-    /// multiples of where its own suspicion arose, whatever the others do: it
-    /// decides as it would alone.
+    /// Follows suspicions with other random numbers. Each check looks where its own
+    /// suspicion leads it, whatever the others do: it decides as it would alone.
     fn confirm(&mut self, findings: &mut Vec<Finding>) {
-        let looks: BTreeSet<u64> = self
-            .open
-            .iter()
-            .filter_map(Open::suspected_at)
-            .flat_map(|n| CONFIRMATION.map(|f| n * f))
-            .collect();
+        let cap = self.looks.last().copied().unwrap_or(0);
+        let suspected: BTreeSet<u64> = self.open.iter().filter_map(Open::suspected_at).collect();
+        // By draws, of which no fewer can be looked at again.
+        let mut looks: Vec<(u64, usize, u64)> = Vec::new();
+        for first in suspected {
+            looks.extend(confirmation(first, cap).into_iter().enumerate().map(|(k, n)| (n, k, first)));
+        }
+        looks.sort_unstable();
         self.terms.attempt = 1;
-        for n in looks {
-            for (k, factor) in CONFIRMATION.iter().enumerate() {
-                let due = |open: &Open| open.suspected_at().is_some_and(|first| first * factor == n);
-                if !self.open.iter().any(due) {
-                    continue;
-                }
-                self.gatherer.draw(1, n);
-                self.terms.ln_tail = budget::look_share(self.attempt, CONFIRMATION.len(), k).ln();
-                self.terms.next = CONFIRMATION.get(k + 1).map(|f| n / factor * f);
-                self.judge(1, Some(n), findings, due);
+        for (n, k, first) in looks {
+            let due = |open: &Open| open.suspected_at() == Some(first);
+            if !self.open.iter().any(due) {
+                continue;
             }
+            self.gatherer.draw(1, n);
+            self.terms.ln_tail = budget::look_share(self.attempt, CONFIRMATION, k).ln();
+            self.terms.next = confirmation(first, cap).get(k + 1).copied();
+            self.judge(1, Some(n), findings, due);
         }
     }
 
@@ -327,5 +333,23 @@ fn halted(halt: &Halt) -> Outcome {
     match halt {
         Halt::Stopped => Outcome::inconclusive(halt.to_string()),
         Halt::Subject(error) => Outcome::error(error.to_string()),
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn a_confirmation_ends_no_earlier_than_the_first_attempt() {
+        assert_eq!(confirmation(1 << 14, 1 << 20), [1 << 14, 1 << 15, 1 << 16, 1 << 20]);
+        assert_eq!(confirmation(1 << 18, 1 << 20), [1 << 18, 1 << 19, 1 << 20, 1 << 21]);
+        for cap in [1, 1 << 14, 300_000, 1 << 20, 1 << 25] {
+            let all = looks(cap);
+            for first in &all {
+                let looks = confirmation(*first, *all.last().unwrap());
+                assert!(looks.is_sorted_by(|a, b| a < b) && looks[3] >= cap && looks[0] == *first);
+            }
+        }
     }
 }

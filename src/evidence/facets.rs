@@ -1,5 +1,6 @@
 //! What a distribution of normals integrates to.
 
+use super::integrals::UNSETTLED;
 use super::meter::{Halt, Meter};
 use super::parts;
 use super::probes;
@@ -154,6 +155,16 @@ impl Facets {
                 self.evaluations
             ));
         }
+        self.cross_checked(tolerance)
+    }
+
+    /// As [`certainty`](super::Integrals::certainty).
+    pub fn certainty(&self, tolerance: f64) -> Result<f64, String> {
+        self.cross_checked(tolerance).map(|()| if self.converged { 1.0 } else { UNSETTLED })
+    }
+
+    /// Whether randomised points agree.
+    fn cross_checked(&self, tolerance: f64) -> Result<(), String> {
         for (name, a, b) in [
             ("∫D cos θm", self.projected, self.cross_check),
             ("∫G1 max(0, wo·m) D / cos θo", self.visible, self.furnace),

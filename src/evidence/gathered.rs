@@ -375,6 +375,7 @@ impl<'a> Gatherer<'a> {
             let setup = Setup { claims, ..self.setup.clone() };
             let integrals = Integrals::gather(&other, &setup, partition, &pilot, draws, MOST_EVALUATIONS)?;
             comparison.unreliable = integrals.reliable().err();
+            comparison.mass_error = integrals.mass().1;
             comparison.masses = integrals.pdf;
         }
         self.evidence.reference = Some(comparison);
@@ -399,14 +400,16 @@ impl<'a> Gatherer<'a> {
 
 impl Evidence {
     /// Whether nothing suggests that the subject does anything: no valid
-    /// sample, and no pdf anywhere.
+    /// sample, no pdf anywhere, and no number that is wrong (of which 0 or no
+    /// sample was made).
     pub fn looks_unimplemented(&self) -> bool {
         let no_sample = self.samples.as_ref().is_some_and(|s| s.valid == 0);
         let no_density = self.integrals.as_ref().is_none_or(|i| i.mass().0 == 0.0);
         let claims = &self.description.claims;
         // A one-sided subject may well do nothing when seen from behind.
         let claimed = self.wo.z > 0.0 || claims.transmissive || claims.two_sided;
-        no_sample && no_density && claimed && self.description.has.sample
+        let sound = self.sanity.tallies.values().all(|tally| !tally.is_broken());
+        no_sample && no_density && sound && claimed && self.description.has.sample
     }
 
     /// The mode of transport by whose scale (η_o/η_i)² transmission goes, which is

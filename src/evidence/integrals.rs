@@ -56,10 +56,26 @@ pub struct Integrals {
     pub evaluations: u64,
 }
 
+/// Times its error that a cubature may be off which did not reach its goals.
+pub(super) const UNSETTLED: f64 = 10.0;
+
 impl Integrals {
     /// Z = ∫ pdf over the sphere, and its error.
     pub fn mass(&self) -> (f64, f64) {
         (self.pdf.iter().sum(), self.pdf_error.iter().sum())
+    }
+
+    /// How many times its error an integral may be off. Where the integrand has jumps,
+    /// goals may not be reached, and errors are guesses. `Err` with the reason where
+    /// nothing can be told.
+    pub fn certainty(&self) -> Result<f64, String> {
+        if self.converged { self.reliable().map(|()| 1.0) } else { self.cross_checked().map(|()| UNSETTLED) }
+    }
+
+    /// How far the mass may be off where a relative error of `tolerance` is right.
+    pub fn slack(&self, tolerance: f64) -> f64 {
+        let (mass, error) = self.mass();
+        tolerance * mass + error
     }
 
     /// ∫ f·|cos θi| of a channel, and its error.
@@ -72,13 +88,19 @@ impl Integrals {
     /// points agree with it within ten standard errors and what the tests
     /// tolerate.
     pub fn reliable(&self) -> Result<(), String> {
-        let (mass, error) = self.mass();
         if !self.converged {
+            let (mass, error) = self.mass();
             return Err(format!(
                 "integration unreliable here: ∫pdf = {mass:.6} ± {error:.1e} after {} directions",
                 self.evaluations
             ));
         }
+        self.cross_checked()
+    }
+
+    /// Whether randomised points agree with the total mass.
+    fn cross_checked(&self) -> Result<(), String> {
+        let (mass, error) = self.mass();
         let (other, deviation) = self.cross_check;
         if !((mass - other).abs() <= CROSS_DEVIATIONS * deviation + error + 1e-3 * mass) {
             return Err(format!(

@@ -79,7 +79,7 @@ impl Pairs {
             found.adjoint = Some(adjoint(meter, setup, &wi)?);
         }
         for draw in &pilot.discrete {
-            found.reverse(meter, setup, draw.wi, &draw.throughput)?;
+            found.reverse(meter, setup, draw.wi, &draw.throughput())?;
         }
         Ok(found)
     }
@@ -143,16 +143,20 @@ impl Pairs {
         let back = (0..samples.len())
             .find(|k| samples.lobe[*k].is_discrete() && (samples.wi[*k] - setup.wo).length() < 1e-4);
         let (front_o, front_i) = (setup.wo.z > 0.0, wi.z > 0.0);
+        let factor = |transport| setup.claims.flux_factor(front_o, front_i, transport);
+        let own = factor(setup.transport);
         let worst = |transport| {
-            let there = setup.claims.flux_factor(front_o, front_i, transport);
+            let there = factor(transport);
             let here = setup.claims.flux_factor(front_i, front_o, transport);
             let mut worst = (0.0, 0.0, 0.0);
             for (c, t) in throughput.iter().enumerate() {
                 let a = t * there;
                 let b = back.map_or(0.0, |k| samples.weight_of(k)[c] * samples.pdf[k] * here);
                 // A lobe of flux 1/20 that is drawn about as often is missed in 1024
-                // draws with probability 1.6e-23; a rarer one says nothing.
-                let error = if back.is_none() && a < 0.05 { 0.0 } else { relative_error(a, b, 1e-9) };
+                // draws with probability 1.6e-23; a rarer one says nothing. It is missed
+                // under every scale: the other one explains nothing by calling it rare.
+                let rare = back.is_none() && a.max(t * own) < 0.05;
+                let error = if rare { 0.0 } else { relative_error(a, b, 1e-9) };
                 if !(error <= worst.0) {
                     worst = (error, a, b);
                 }

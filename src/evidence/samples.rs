@@ -18,8 +18,17 @@ pub struct DiscreteDraw {
     pub wi: Direction,
     /// Its flags.
     pub lobe: Lobe,
-    /// Its claimed probability times its weight, by channel.
-    pub throughput: Vec<f64>,
+    /// Its claimed probability.
+    pub probability: f64,
+    /// Its weight, by channel.
+    pub weight: Vec<f64>,
+}
+
+impl DiscreteDraw {
+    /// The claimed probability times the weight, by channel.
+    pub fn throughput(&self) -> Vec<f64> {
+        self.weight.iter().map(|w| w * self.probability).collect()
+    }
 }
 
 /// The draws of the pilot, as far as others use them.
@@ -48,6 +57,9 @@ pub struct SampleIdentities {
     pub returned_pdf: Tally,
     /// pdf(wo, wi) > 0.
     pub zero_pdf: Tally,
+    /// A continuous sample that carries light leaves on the side that its flags tell.
+    #[serde(default)]
+    pub side: Tally,
     /// The most frequent direction among continuous samples, and its share.
     pub repeated: Option<(Direction, f64)>,
     /// pdf() and eval() do not stand out at the directions of discrete lobes.
@@ -62,6 +74,7 @@ impl SampleIdentities {
             weight_other: Tally::new(setup.tolerance()),
             returned_pdf: Tally::new(setup.tolerance()),
             zero_pdf: Tally::new(0.0),
+            side: Tally::new(0.0),
             ..Self::default()
         };
         let mut pilot = Pilot::default();
@@ -76,12 +89,8 @@ impl SampleIdentities {
             found.drawn += BLOCK;
             let rows: Vec<usize> = (0..samples.len()).filter(|k| samples.lobe[*k].is_continuous()).collect();
             let wi: Vec<Direction> = rows.iter().map(|k| samples.wi[*k]).collect();
-            for k in 0..samples.len() {
-                found.valid += u64::from(samples.lobe[k].is_valid());
-                if samples.lobe[k].is_discrete() {
-                    pilot.add_discrete(samples.wi[k], samples.lobe[k], samples.pdf[k], samples.weight_of(k));
-                }
-            }
+            found.valid += samples.lobe.iter().filter(|lobe| lobe.is_valid()).count() as u64;
+            pilot.add_discrete(&samples);
             if has.pdf {
                 meter.pdf(setup.wo, &wi, setup.transport, &mut density)?;
             }
@@ -91,6 +100,13 @@ impl SampleIdentities {
             for (row, &k) in rows.iter().enumerate() {
                 let wi = samples.wi[k];
                 let place = || Place::pair(setup.wo, wi).drawn_by(&u[k * d..(k + 1) * d]);
+                // Off the support, a draw of weight 0 says nothing.
+                if samples.weight_of(k).iter().any(|w| *w > 0.0) {
+                    let wrong = contradicts_side(samples.lobe[k], setup.wo, wi);
+                    found.side.look(if wrong { 1.0 } else { 0.0 }, || {
+                        place().value("flags", f64::from(samples.lobe[k].0))
+                    });
+                }
                 if !has.pdf {
                     continue;
                 }
@@ -153,12 +169,21 @@ impl SampleIdentities {
     }
 }
 
+/// Whether a lobe is flagged as one side's alone, and `wi` lies on the other.
+fn contradicts_side(lobe: Lobe, wo: Direction, wi: Direction) -> bool {
+    let told = lobe.contains(Lobe::REFLECTION);
+    told != lobe.contains(Lobe::TRANSMISSION) && told != wi.same_side(wo)
+}
+
 impl Pilot {
-    fn add_discrete(&mut self, wi: Direction, lobe: Lobe, probability: f64, weight: &[f64]) {
-        let near = |d: &DiscreteDraw| (d.wi - wi).length() < 1e-4 && d.lobe == lobe;
-        if self.discrete.len() < 16 && !self.discrete.iter().any(near) {
-            let throughput = weight.iter().map(|w| w * probability).collect();
-            self.discrete.push(DiscreteDraw { wi, lobe, throughput });
+    fn add_discrete(&mut self, samples: &Samples) {
+        for k in (0..samples.len()).filter(|k| samples.lobe[*k].is_discrete()) {
+            let (wi, lobe, probability) = (samples.wi[k], samples.lobe[k], samples.pdf[k]);
+            let near = |d: &DiscreteDraw| (d.wi - wi).length() < 1e-4 && d.lobe == lobe;
+            if self.discrete.len() < 16 && !self.discrete.iter().any(near) {
+                let weight = samples.weight_of(k).to_vec();
+                self.discrete.push(DiscreteDraw { wi, lobe, probability, weight });
+            }
         }
     }
 
@@ -173,6 +198,18 @@ impl Pilot {
         let [x, y, z] = longest[0].map(f64::from_bits);
         (longest.len() > 1).then(|| (Direction::new(x, y, z), longest.len() as f64 / looked_at))
     }
+}
+
+/// The discrete lobes that a pilot of `meter` meets.
+pub(super) fn discrete_lobes(meter: &Meter, setup: &Setup) -> Result<Vec<DiscreteDraw>, Halt> {
+    let (mut pilot, mut samples) = (Pilot::default(), Samples::default());
+    let mut u = vec![0.0; BLOCK as usize * meter.dimensions()];
+    for block in 0..BLOCKS {
+        setup.key.with("stage", "pilot").block(block).fill(meter.coarse_u(), &mut u);
+        meter.sample(setup.wo, &u, setup.transport, &mut samples)?;
+        pilot.add_discrete(&samples);
+    }
+    Ok(pilot.discrete)
 }
 
 /// pdf and eval at each discrete direction against those 1e-5 rad beside it: a

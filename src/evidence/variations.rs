@@ -4,7 +4,7 @@ use super::integrals::expected_directions;
 use super::meter::{Halt, Meter, Watch};
 use super::parts;
 use super::probes;
-use super::samples::Pilot;
+use super::samples::{DiscreteDraw, Pilot, discrete_lobes};
 use super::setup::Setup;
 use super::tally::{Place, Tally, relative_error};
 use crate::bsdf::{Direction, RandomNumbers, Samples, Subject, SubjectKind};
@@ -283,8 +283,14 @@ pub struct Comparison {
     pub table: Option<Resemblance>,
     /// pdf of both.
     pub pdf: Tally,
+    /// Discrete lobes of both: their directions, probabilities and weights.
+    #[serde(default)]
+    pub discrete: Tally,
     /// ∫ of the other's pdf by leaf, which the draws must follow.
     pub masses: Vec<f64>,
+    /// The error of their sum.
+    #[serde(default)]
+    pub mass_error: f64,
     /// Why these masses cannot be relied on, if so.
     pub unreliable: Option<String>,
     /// Why the two cannot be compared, if so.
@@ -303,11 +309,9 @@ impl Comparison {
         let mut found = Self {
             name: name.into(),
             eval: Tally::new(setup.tolerance()),
-            table: None,
             pdf: Tally::new(setup.tolerance()),
-            masses: Vec::new(),
-            unreliable: None,
-            incomparable: None,
+            discrete: Tally::new(setup.tolerance()),
+            ..Self::default()
         };
         if other.channels() != meter.channels() {
             found.incomparable =
@@ -340,6 +344,10 @@ impl Comparison {
             other.pdf(setup.wo, &wi, setup.transport, &mut b)?;
             compare(&mut found.pdf, setup, &wi, ["pdf", "reference"], &a, &b);
         }
+        if meter.description.has.sample && other.description.has.sample {
+            let theirs = discrete_lobes(other, setup)?;
+            compare_lobes(&mut found.discrete, setup, &pilot.discrete, &theirs);
+        }
         let (a, b) = (parts::values(meter, setup, &wi)?, parts::values(other, setup, &wi)?);
         // Transmittance and polarisation may be told by one alone.
         let shared = match meter.description.kind {
@@ -362,5 +370,46 @@ fn compare(tally: &mut Tally, setup: &Setup, wi: &[Direction], names: [&str; 2],
         tally.look(relative_error(*a, *b, setup.floor()), || {
             Place::pair(setup.wo, wi[k / width]).value(names[0], *a).value(names[1], *b)
         });
+    }
+}
+
+/// Discrete lobes of this probability are met in the draws of a pilot, or missed with
+/// probability 6e-15.
+const MET: f64 = 1e-3;
+
+/// So near, in radians, two discrete directions are those of one lobe, or within the
+/// tolerance, where that is more.
+const SAME: f64 = 1e-4;
+
+/// Each discrete lobe of either against the other's nearest one, whatever their flags.
+fn compare_lobes(tally: &mut Tally, setup: &Setup, own: &[DiscreteDraw], theirs: &[DiscreteDraw]) {
+    let nearest = |to: &DiscreteDraw, among: &[DiscreteDraw]| -> Option<DiscreteDraw> {
+        let off = |d: &DiscreteDraw| (d.wi - to.wi).length();
+        let near = among.iter().min_by(|a, b| off(a).total_cmp(&off(b)))?;
+        (off(near) < SAME.max(setup.tolerance())).then(|| near.clone())
+    };
+    let missing = |tally: &mut Tally, lobe: &DiscreteDraw, name: &str| {
+        // A rare one may have been missed.
+        if lobe.probability >= MET {
+            tally.look(1.0, || Place::pair(setup.wo, lobe.wi).value(name, lobe.probability));
+        }
+    };
+    for lobe in own {
+        let Some(other) = nearest(lobe, theirs) else {
+            missing(tally, lobe, "probability, and none in the reference");
+            continue;
+        };
+        let place =
+            |name: &str, a: f64, b: f64| Place::pair(setup.wo, lobe.wi).value(name, a).value("reference", b);
+        let angle = (lobe.wi - other.wi).length();
+        tally.look(angle, || place("radians off", angle, 0.0));
+        let (a, b) = (lobe.probability, other.probability);
+        tally.look(relative_error(a, b, setup.floor()), || place("probability", a, b));
+        for (a, b) in lobe.weight.iter().zip(&other.weight) {
+            tally.look(relative_error(*a, *b, setup.floor()), || place("weight", *a, *b));
+        }
+    }
+    for lobe in theirs.iter().filter(|lobe| nearest(lobe, own).is_none()) {
+        missing(tally, lobe, "probability in the reference, and none here");
     }
 }

@@ -208,9 +208,6 @@ fn of_lobes() -> Vec<Mutant> {
         )
         .source("a refracted direction by a wrong Snell's law")
         .varied(&[("eta", 1.1, 2.5)])
-        .must_fail(&["discrete-lobes", "reciprocity"])
-        // Both ways along a bent path, its scale may look like that of importance, and
-        // flux is then counted so.
-        .may_fail(&["white-furnace"]),
+        .must_fail(&["discrete-lobes", "reciprocity"]),
     ]
 }

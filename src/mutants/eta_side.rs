@@ -79,9 +79,8 @@ pub(super) fn mutants() -> Vec<Mutant> {
         .source("cycles@081aa191b, cycles@e3b4722e7")
         .varied(&[("eta", 1.1, 2.5)])
         .shows_at(&[75.0])
-        .must_fail(&["sanity"])
-        // All light is lost there. As no sample is sound, the rest is not looked at.
-        .may_fail(&["white-furnace"]),
+        // All light is lost there.
+        .must_fail(&["sanity", "white-furnace"]),
         Mutant::new(
             "nan-beyond-critical-angle",
             "rough-dielectric",

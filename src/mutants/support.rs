@@ -93,7 +93,8 @@ fn of_samples() -> Vec<Mutant> {
         .source("tungsten@d008dc6")
         .strength(1e-3, 0.1, "share of the samples that fall below the horizon")
         .varied(&[("alpha", 0.05, 0.8)])
-        .must_fail(&["support"])
+        // They keep the flag of reflection.
+        .must_fail(&["support", "discrete-lobes"])
         // So few are hardly missed above the horizon.
         .may_fail(&["goodness-of-fit", "mis"]),
         Mutant::new(
@@ -149,8 +150,8 @@ fn of_samples() -> Vec<Mutant> {
         .varied(&[("alpha", 0.3, 0.9)])
         .shows_at(&[75.0])
         // The functions agree, on a side to which no light is claimed to leave, and from
-        // which none comes back.
-        .must_fail(&["support", "reciprocity"]),
+        // which none comes back; and what is drawn there is flagged as reflection.
+        .must_fail(&["support", "reciprocity", "discrete-lobes"]),
     ]
 }
 

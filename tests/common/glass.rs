@@ -25,6 +25,8 @@ pub enum GlassBug {
     OneScaleAsConvention,
     /// Fresnel at n·wo in place of h·wo, in all functions.
     FresnelAtNormal,
+    /// sample() flags what is transmitted as reflection.
+    FlaggedReflection,
 }
 
 /// Isotropic GGX, visible normals, separable masking through the surface; the
@@ -167,6 +169,7 @@ impl Bsdf for Glass {
         if (wi.z > 0.0) != (lobe == Lobe::GLOSSY_REFLECTION) {
             return None;
         }
+        let lobe = if self.bug == GlassBug::FlaggedReflection { Lobe::GLOSSY_REFLECTION } else { lobe };
         let wi = up(wi);
         let pdf = Bsdf::pdf(self, wo, wi, transport);
         let weight = Bsdf::eval(self, wo, wi, transport) * (wi.z.abs() / pdf);
