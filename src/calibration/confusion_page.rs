@@ -117,6 +117,7 @@ impl Part for Confusion {
                 }
             };
             say(&row.declared, "");
+            say(&row.undeclared, " (undeclared)");
         }
         lines.join("\n") + "\n"
     }

@@ -8,6 +8,18 @@ use crate::statistics::noncentral;
 const NODES: [f64; 3] = [0.112_701_665_379_258_3, 0.5, 0.887_298_334_620_741_7];
 const WEIGHTS: [f64; 3] = [5.0 / 18.0, 8.0 / 18.0, 5.0 / 18.0];
 
+/// A density that differs by this factor within a leaf is steep.
+const STEEP: f64 = 4.0;
+
+/// Densities fall alike in a leaf whose ln of the steepness differs by less.
+const ALIKE: f64 = 0.4;
+
+/// Largest over least value.
+fn steepness(values: &[f64]) -> f64 {
+    let ends = values.iter().fold((f64::INFINITY, 0.0f64), |(a, b), p| (a.min(*p), b.max(*p)));
+    ends.1 / ends.0
+}
+
 /// Counts are compared in groups of cells that expect this many, for what is local,
 /// and in so many groups, for what is spread out.
 const GROUP: f64 = 20.0;
@@ -30,6 +42,8 @@ pub struct Counts {
     nodes: Vec<(Direction, f64)>,
     /// What the rule misses of the subject's own masses, by leaf.
     correction: Vec<f64>,
+    /// [`steepness`] of the subject's own density, by leaf.
+    steepness: Vec<f64>,
 }
 
 /// Pearson's statistic of some groups.
@@ -62,6 +76,9 @@ pub struct CountTest {
     spread: Pearson,
     /// Noncentrality that the slack of the masses allows.
     slack: f64,
+    /// Samples in leaves that were left out, and in all.
+    skipped: u64,
+    counted: u64,
 }
 
 impl CountTest {
@@ -71,6 +88,8 @@ impl CountTest {
             local: self.local.and(other.local),
             spread: self.spread.and(other.spread),
             slack: self.slack + other.slack,
+            skipped: self.skipped + other.skipped,
+            counted: self.counted + other.counted,
         }
     }
 
@@ -81,10 +100,9 @@ impl CountTest {
         (smaller + std::f64::consts::LN_2).min(0.0)
     }
 
-    /// ln-likelihood over a perfect fit.
+    /// ln-likelihood over what chance does to right densities.
     pub fn ln_likelihood(&self) -> f64 {
-        let of = |p: &Pearson| -0.5 * (p.x2 - p.dof - self.slack).max(0.0);
-        of(&self.local).min(of(&self.spread))
+        (self.ln_p() - USUAL).min(0.0)
     }
 
     /// Pearson's statistic of the small groups.
@@ -94,9 +112,12 @@ impl CountTest {
 
     /// Whether the density may be right: of hardly any draws it cannot be told.
     pub fn fits(&self) -> bool {
-        self.local.dof >= 8.0 && self.ln_p() > FITS
+        self.local.dof >= 8.0 && 2 * self.skipped < self.counted.max(1) && self.ln_p() > FITS
     }
 }
+
+/// ln of a p-value that is nothing unusual.
+const USUAL: f64 = -4.6;
 
 /// ln of the p-value at which a density is given up.
 const FITS: f64 = -9.2;
@@ -129,14 +150,16 @@ impl Counts {
             }
         }
         let own = evidence.integrals.as_ref().map_or(Vec::new(), |i| i.pdf.clone());
-        let mut counts = Self { leaves, others: draws - counted, draws, own, nodes, correction: Vec::new() };
+        let (others, none) = (draws - counted, Vec::new);
+        let mut counts = Self { leaves, others, draws, own, nodes, correction: none(), steepness: none() };
         let values = pdf(&counts.directions());
-        let by_rule = counts.masses_of(&values);
+        let by_rule = counts.masses_of(&values, false);
         // Densities in question have the peaks of the subject's own, or other ones.
         let correction = |(own, rule): (&f64, &f64)| {
             let ratio = own / rule;
             if (ratio - 1.0).abs() < 0.3 { ratio } else { 1.0 }
         };
+        counts.steepness = values.chunks_exact(9).map(steepness).collect();
         counts.correction = counts.own.iter().zip(&by_rule).map(correction).collect();
         Some(counts)
     }
@@ -146,21 +169,36 @@ impl Counts {
         self.nodes.iter().map(|n| n.0).collect()
     }
 
-    /// Mass of each leaf under a density; NaN where that is NaN at some node and not
-    /// at all of them: a border that the rule does not see runs through the leaf.
+    /// Mass of each leaf under a density; NaN where the rule does not see it well: a
+    /// border runs through the leaf (the density is NaN at some node, and not at all
+    /// of them), or the density falls steeply, and not as the subject's own.
     pub fn masses(&self, mut density: impl FnMut(Direction) -> f64) -> Vec<f64> {
         let values: Vec<f64> = self.nodes.iter().map(|n| density(n.0)).collect();
-        self.masses_of(&values)
+        self.masses_of(&values, true)
+    }
+
+    /// As [`masses`](Self::masses), by the rule where it is steep too: for the search
+    /// of a number.
+    pub fn rough_masses(&self, mut density: impl FnMut(Direction) -> f64) -> Vec<f64> {
+        let values: Vec<f64> = self.nodes.iter().map(|n| density(n.0)).collect();
+        self.masses_of(&values, false)
     }
 
     /// Mass of each leaf from the density's values at [`directions`](Self::directions).
-    fn masses_of(&self, values: &[f64]) -> Vec<f64> {
+    fn masses_of(&self, values: &[f64], strict: bool) -> Vec<f64> {
         let sum = |(leaf, (values, nodes)): (usize, (&[f64], &[(Direction, f64)]))| {
             if values.iter().all(|v| v.is_nan()) {
-                return 0.0;
+                // Between the nodes there is something.
+                return if self.own.get(leaf).is_some_and(|m| *m > 0.0) { f64::NAN } else { 0.0 };
             }
             let sum: f64 = values.iter().zip(nodes).map(|(p, (_, w))| p * w).sum();
-            sum * self.correction.get(leaf).copied().unwrap_or(1.0)
+            let steep = steepness(values);
+            let alike = self.steepness.get(leaf).is_some_and(|own| (steep / own).ln().abs() < ALIKE);
+            match self.correction.get(leaf) {
+                Some(correction) if alike || !strict => sum * correction,
+                _ if steep > STEEP && strict && sum * self.draws as f64 > 1.0 => f64::NAN,
+                _ => sum,
+            }
         };
         values.chunks_exact(9).zip(self.nodes.chunks_exact(9)).enumerate().map(sum).collect()
     }
@@ -209,6 +247,8 @@ impl Counts {
             test
         };
         CountTest {
+            skipped: masses.iter().zip(&self.leaves).filter(|(m, _)| m.is_nan()).map(|(_, n)| n).sum(),
+            counted: self.leaves.iter().sum(),
             local: group(GROUP),
             spread: group((n * total / GROUPS).max(GROUP)),
             slack: n * SLACK * SLACK,

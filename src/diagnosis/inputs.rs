@@ -259,7 +259,8 @@ fn split_by_share(view: &View, book: &Textbook, raws: &[(&Seen, Raw)]) -> bool {
         // One side is broken altogether, and the other one in part or not at all.
         let whole = |[broken, all]: [usize; 2]| all > 8 && broken * 10 >= all * 9;
         let part = |[broken, all]: [usize; 2]| all > 8 && broken * 10 < all * 9;
-        (whole(below) && part(above)) || (part(below) && whole(above))
+        let all = whole(below) && whole(above) && book.lobes.len() == 2;
+        all || (whole(below) && part(above)) || (part(below) && whole(above))
     })
 }
 

@@ -6,12 +6,14 @@
 //! numbers; a claim that they contradict is dropped, and the [`contest`] ranks
 //! the rest by likelihood with a price for what had to be fitted.
 
+mod by_counts;
 mod compensation;
 mod contest;
 mod counts;
 mod deviation;
 mod discrete;
 mod explanation;
+mod fitting;
 mod functions;
 mod inputs;
 mod lobes;

@@ -1,15 +1,14 @@
 //! What pdf() has wrong, where sample() and eval() say what it must be.
 
+use super::by_counts::by_counts;
 use super::counts::{CountTest, Counts};
 use super::deviation::{Function, Region, equals, fit, from_textbook};
-use super::explanation::{COUNTED_NUMBER, Claim, EXACT_NUMBER};
+use super::explanation::{Claim, EXACT_NUMBER};
 use super::mistakes::{Mistake, PDF};
-use super::parts::{At, Parts};
 use super::textbook::Textbook;
 use super::view::{Point, Seen, View};
-use crate::bsdf::{Direction, Transport};
+use crate::bsdf::Direction;
 use crate::cause::Cause;
-use crate::models::microfacet::{Distribution, Roughness};
 
 /// Cases whose counts are compared: those that fail most come first.
 const COUNTED: usize = 4;
@@ -46,7 +45,7 @@ pub fn claims(view: &View, book: Option<&Textbook>) -> Vec<Claim> {
         return Vec::new();
     }
     let counts = counts(view);
-    let Some(book) = book else { return of_counts(view, &counts) };
+    let Some(book) = book else { return by_counts(view, &counts) };
     if book.agrees.by_pdf() {
         return Vec::new();
     }
@@ -191,13 +190,13 @@ pub fn nearest(
         (x, book.with(name, x).map_or(f64::INFINITY, |b| loss(&b)))
     };
     const STEP: f64 = 0.25;
-    // From 1/150 to 150 times as large: degrees taken for radians are within.
-    let steps: Vec<(f64, f64)> = (-20..=20).map(|k| f64::from(k) * STEP).map(|ln| (ln, at(ln).1)).collect();
-    let here = steps[20].1;
-    let best = steps.iter().filter(|s| s.1.is_finite()).min_by(|a, b| a.1.total_cmp(&b.1))?.0;
-    if steps.iter().filter(|s| s.1.is_finite()).all(|s| (s.1 - here).abs() < 1e-12) {
+    let here = at(0.0).1;
+    if [-1.0, -0.3, 0.3].map(|ln| at(ln).1).iter().all(|l| !l.is_finite() || (l - here).abs() < 1e-12) {
         return None;
     }
+    // From 1/150 to 150 times as large: degrees taken for radians are within.
+    let steps: Vec<(f64, f64)> = (-20..=20).map(|k| f64::from(k) * STEP).map(|ln| (ln, at(ln).1)).collect();
+    let best = steps.iter().filter(|s| s.1.is_finite()).min_by(|a, b| a.1.total_cmp(&b.1))?.0;
     Some(at(least(best - STEP, best + STEP, 40, |ln| at(ln).1)))
 }
 
@@ -218,67 +217,4 @@ pub fn least(mut lo: f64, mut hi: f64, sections: usize, f: impl Fn(f64) -> f64) 
         }
     }
     0.5 * (lo + hi)
-}
-
-/// Without a textbook: factors that make the counts fit.
-fn of_counts(view: &View, counts: &[(usize, Counts)]) -> Vec<Claim> {
-    let parts = declared(view);
-    let mut claims = Vec::new();
-    if counts.len() < 2 {
-        return claims;
-    }
-    for m in PDF {
-        let test = |power: f64, scale: f64, fitted: usize| {
-            let mut total = CountTest::default();
-            for (k, c) in counts {
-                let (wo, t) = (view.cases[*k].wo, view.cases[*k].transport);
-                let directions = c.directions();
-                let repaired = |(wi, p): (&Direction, f64)| {
-                    let at = At::new(&parts, wo, *wi, Transport::Radiance);
-                    let factor = (m.factor)(&at).map_or(1.0, |f| scale * f.powf(power));
-                    if p == 0.0 { 0.0 } else { p / factor }
-                };
-                let values: Vec<f64> =
-                    directions.iter().zip(view.pdf(wo, &directions, t)).map(repaired).collect();
-                let mut values = values.into_iter();
-                let masses = c.masses(|_| values.next().unwrap_or(0.0));
-                total = total.and(c.test(&masses, fitted));
-            }
-            total
-        };
-        let (found, cost) = match m.free {
-            super::deviation::Free::Nothing => (test(1.0, 1.0, 0), 0.0),
-            super::deviation::Free::Power => (test(1.0, 1.0, 0), 0.0),
-            super::deviation::Free::Scale => {
-                let (mass, seen) = counts.iter().fold((0.0, 0.0), |(m, s), (_, c)| {
-                    let drawn = c.leaves.iter().sum::<u64>() as f64 / c.draws as f64;
-                    (m + c.own.iter().sum::<f64>(), s + drawn)
-                });
-                (test(1.0, mass / seen, 1), COUNTED_NUMBER)
-            }
-        };
-        if found.fits() {
-            claims.push(
-                Claim::new(m.cause, format!("pdf() {}", m.what), m.repair)
-                    .likelihood(found.ln_likelihood())
-                    .price(1.0 + cost)
-                    .p(found.ln_p()),
-            );
-        }
-    }
-    claims
-}
-
-/// Parts from parameters and claims by their names.
-fn declared(view: &View) -> Parts {
-    let roughness = view.number("alpha").map(|x| {
-        let y = view.number("alpha_y").filter(|y| *y > 0.0).unwrap_or(x);
-        Roughness { x, y }
-    });
-    Parts {
-        distribution: roughness.map(Distribution::ggx),
-        masking: None,
-        fresnel: None,
-        eta: view.description.claims.eta.or_else(|| view.number("eta")),
-    }
 }

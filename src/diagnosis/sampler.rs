@@ -102,8 +102,8 @@ impl Scene<'_> {
             let total: f64 = masses.iter().sum();
             lost = lost.max(1.0 - total);
             let drawn = c.leaves.iter().sum::<u64>() as f64 / c.draws as f64;
-            // Some may be left undrawn; none more than all.
-            let scale = if drawn > 0.995 { 1.0 / total } else { drawn / total };
+            // Some may be left undrawn after as many tries as the code makes.
+            let scale = drawn / total;
             test = test.and(c.test(&masses.iter().map(|m| m * scale).collect::<Vec<_>>(), 1));
         }
         let more = self.counts.iter().any(|(k, c)| {
@@ -204,7 +204,7 @@ impl Scene<'_> {
             let mut sum = 0.0;
             for (k, c) in self.counts.iter().take(2) {
                 let wo = self.view.cases[*k].wo;
-                let masses = c.masses(|wi| book.pdf(wo, wi));
+                let masses = c.rough_masses(|wi| book.pdf(wo, wi));
                 let n = c.draws as f64;
                 for (m, count) in masses.iter().zip(&c.leaves) {
                     let (e, o) = (n * m + 0.5, *count as f64 + 0.5);
@@ -333,8 +333,8 @@ impl Scene<'_> {
         let (mut own, mut mirrored) = (Vec::new(), Vec::new());
         for (k, c) in &self.counts {
             let wo = self.view.cases[*k].wo;
-            own.push(c.masses(|wi| book.pdf(wo, wi)));
-            mirrored.push(c.masses(|wi| book.pdf(wo, Direction::new(wi.x, -wi.y, wi.z))));
+            own.push(c.rough_masses(|wi| book.pdf(wo, wi)));
+            mirrored.push(c.rough_masses(|wi| book.pdf(wo, Direction::new(wi.x, -wi.y, wi.z))));
         }
         // Least squares for the share.
         let (mut top, mut bottom) = (0.0, 0.0);

@@ -290,7 +290,7 @@ fn in_sampler(view: &View, book: &Textbook) -> Vec<Claim> {
 
 /// The mixture of the lobes that fits the counts best.
 fn mixture(wo: Direction, book: &Textbook, c: &Counts) -> Option<(Mixed, CountTest)> {
-    let masses: Vec<Vec<f64>> = book.lobes.iter().map(|l| c.masses(|wi| (l.density)(wo, wi))).collect();
+    let masses: Vec<Vec<f64>> = book.lobes.iter().map(|l| c.rough_masses(|wi| (l.density)(wo, wi))).collect();
     let n = c.draws as f64;
     let rows: Vec<(Vec<f64>, f64, f64)> = (0..c.leaves.len())
         .map(|leaf| {

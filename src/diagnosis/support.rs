@@ -186,6 +186,9 @@ fn below(view: &View) -> Vec<Claim> {
             "reciprocity",
             "energy",
             "sensitivity",
+            "discrete-lobes",
+            "weight",
+            "returned-pdf",
         ])
         .price(price),
     ]

@@ -6,7 +6,7 @@ use super::view::View;
 use crate::bsdf::{self, Direction, Spectrum, Subject, SubjectKind, Transport};
 use crate::models::microfacet::NormalSampling;
 use crate::registry::{Kind, Model, Parameters, Registry, Value};
-use std::sync::Arc;
+use std::sync::{Arc, OnceLock};
 
 /// Of wo.
 pub type Share = Box<dyn Fn(Direction) -> f64 + Send + Sync>;
@@ -79,37 +79,41 @@ impl Textbook {
     /// The model that agrees best with the functions of a subject, with the
     /// parameters that both declare; `None` where none agrees with any function.
     pub fn of(view: &View) -> Option<Self> {
-        let registry = Registry::builtin();
+        let registry = registry();
         let mut best: Option<(f64, Self)> = None;
+        let mut consider = |mut book: Self| {
+            book.agrees = book.agreement(view);
+            let known = book.parameters.0.keys().filter(|name| view.parameters.0.contains_key(*name));
+            let known = known.count() as f64 / view.parameters.0.len().max(1) as f64;
+            // Which function agrees says more than names do; names decide among
+            // models that agree alike.
+            let agrees = book.agrees;
+            let whole = f64::from(u8::from(agrees.by_pdf())) + f64::from(u8::from(agrees.by_value()));
+            let score = 4.0 * whole + 2.0 * known + agrees.pdf + agrees.value;
+            // One side or one mode may be what is wrong.
+            let somewhere = agrees.pdf.max(agrees.value) > 0.24;
+            if somewhere && best.as_ref().is_none_or(|(s, _)| score > *s) {
+                best = Some((score, book));
+            }
+        };
         for model in registry.models().filter(|m| m.kind() == view.description.kind) {
-            if model.kind() == SubjectKind::Fresnel {
-                continue;
+            if model.kind() != SubjectKind::Fresnel {
+                let books = combinations(model, &view.parameters);
+                books.iter().filter_map(|p| Self::new(model.name(), p)).for_each(&mut consider);
             }
-            for parameters in combinations(model, &view.parameters) {
-                let Some(mut book) = Self::new(model.name(), &parameters) else { continue };
-                book.agrees = book.agreement(view);
-                let known = model.parameters().iter().filter(|p| view.parameters.0.contains_key(&p.name));
-                let known = known.count() as f64 / view.parameters.0.len().max(1) as f64;
-                // Which function agrees says more than names do; names decide among
-                // models that agree alike.
-                let agrees = book.agrees;
-                let whole = f64::from(u8::from(agrees.by_pdf())) + f64::from(u8::from(agrees.by_value()));
-                let score = 4.0 * whole + 2.0 * known + agrees.pdf + agrees.value;
-                // One side or one mode may be what is wrong.
-                let somewhere = agrees.pdf.max(agrees.value) > 0.24;
-                if somewhere && best.as_ref().is_none_or(|(s, _)| score > *s) {
-                    best = Some((score, book));
-                }
-            }
+        }
+        // Where nothing is declared, numbers are those that fit.
+        if !view.parameters.0.values().any(|v| matches!(v, Value::Number(_))) {
+            super::fitting::fitted(view).into_iter().for_each(&mut consider);
         }
         best.map(|(_, book)| book)
     }
 
     /// The model called `name`.
     pub fn new(name: &str, p: &Parameters) -> Option<Self> {
-        let registry = Registry::builtin();
+        let registry = registry();
         let model = registry.model(name).ok()?;
-        let subject = model.build(p, &registry).ok()?;
+        let subject = model.build(p, registry).ok()?;
         let description = subject.describe();
         let (channels, dimensions) = (description.channels.len().max(1), description.dimensions.max(1));
         let (parts, lobes) = taken_apart(name, p, &subject, channels);
@@ -125,8 +129,18 @@ impl Textbook {
         })
     }
 
-    /// The same model with another number.
+    /// Its number called `name`.
+    pub fn number(&self, name: &str) -> Option<f64> {
+        match self.parameters.0.get(name)? {
+            Value::Number(v) => Some(*v),
+            Value::Text(_) => None,
+        }
+    }
+
+    /// The same model with another number; `None` where that is out of range.
     pub fn with(&self, parameter: &str, value: f64) -> Option<Self> {
+        let registry = registry();
+        registry.model(&self.name).ok()?.parameter(parameter).ok()?.check(&Value::Number(value)).ok()?;
         let mut parameters = self.parameters.clone();
         parameters.0.insert(parameter.into(), Value::Number(value));
         Self::new(&self.name, &parameters)
@@ -205,6 +219,12 @@ impl Textbook {
     }
 }
 
+/// The models that come with gonio, made once.
+fn registry() -> &'static Registry {
+    static REGISTRY: OnceLock<Registry> = OnceLock::new();
+    REGISTRY.get_or_init(Registry::builtin)
+}
+
 fn value_of(
     subject: &dyn Subject,
     channels: usize,
@@ -222,7 +242,7 @@ fn value_of(
 
 /// Parameters of `model`: those given where it declares them, else every choice and
 /// the default numbers. None where it needs what is not given.
-fn combinations(model: &Model, given: &Parameters) -> Vec<Parameters> {
+pub fn combinations(model: &Model, given: &Parameters) -> Vec<Parameters> {
     let shared: Vec<(String, Value)> = given
         .0
         .iter()
@@ -233,23 +253,27 @@ fn combinations(model: &Model, given: &Parameters) -> Vec<Parameters> {
     if model.parameters().iter().any(composed) {
         return Vec::new();
     }
-    let mut all = vec![shared];
+    let Ok(complete) = model.complete(&shared) else { return Vec::new() };
+    let mut all = vec![complete];
     for p in model.parameters() {
         let Kind::Choice { options, .. } = &p.kind else { continue };
         if given.0.contains_key(&p.name) {
             continue;
         }
-        let with = |(given, option): (&Vec<(String, Value)>, &String)| {
-            let mut given = given.clone();
-            given.push((p.name.clone(), Value::Text(option.clone())));
-            given
+        let each = |with: Parameters| -> Vec<Parameters> {
+            if !p.applies(&with) {
+                return vec![with];
+            }
+            let option = |o: &String| {
+                let mut with = with.clone();
+                with.0.insert(p.name.clone(), Value::Text(o.clone()));
+                with
+            };
+            options.iter().map(option).collect()
         };
-        all = all.iter().flat_map(|given| options.iter().map(move |o| (given, o))).map(with).collect();
-        if all.len() > 64 {
-            break;
-        }
+        all = all.into_iter().flat_map(each).collect();
     }
-    all.iter().filter_map(|given| model.complete(given).ok()).collect()
+    all
 }
 
 /// Parts and lobes of a model; one lobe, called "", where it is not known to have
