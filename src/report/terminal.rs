@@ -210,13 +210,13 @@ fn kinds(report: &Report) -> Vec<Vec<&CheckResult>> {
 
 fn blocks(text: &mut String, report: &Report, look: Look) {
     let kinds = kinds(report);
-    let mut diagnosed = BTreeSet::new();
+    let mut told = BTreeSet::new();
     for kind in kinds.iter().take(BLOCKS) {
         line(text, "");
         let subject = &kind[0].subject.name;
-        let told = kind[0].verdict == Verdict::Fail && diagnosed.insert(subject);
-        let causes = report.diagnoses.iter().filter(|d| told && d.subject == *subject);
-        block(text, kind, &causes.collect::<Vec<_>>(), look);
+        let first = matches!(kind[0].verdict, Verdict::Error | Verdict::Fail) && told.insert(subject);
+        let found = report.diagnoses.iter().find(|d| first && d.subject == *subject);
+        block(text, kind, found, look);
     }
     if kinds.len() > BLOCKS {
         let mut counts: BTreeMap<(Verdict, &str), usize> = BTreeMap::new();
@@ -231,9 +231,69 @@ fn blocks(text: &mut String, report: &Report, look: Look) {
             .collect();
         indented(text, &format!("and more: {}; all are in the report", parts.join(", ")), 0, look);
     }
+    for found in report.diagnoses.iter().filter(|d| !told.contains(&d.subject)).take(BLOCKS) {
+        let cause = found.cause.as_ref().map_or(String::new(), |c| format!(" [{c}]"));
+        indented(text, &format!("{}: {}{cause}", found.subject, found.statement), 0, look);
+    }
 }
 
-fn block(text: &mut String, kind: &[&CheckResult], causes: &[&Diagnosis], look: Look) {
+/// What is wrong with each failing subject, by itself.
+pub fn diagnoses(report: &Report, look: Look) -> String {
+    let mut text = String::new();
+    for found in &report.diagnoses {
+        line(&mut text, &look.paint("1", &found.subject));
+        let of = |r: &&CheckResult| r.subject.name == found.subject;
+        diagnosis(&mut text, found, report.results.iter().find(of), look);
+    }
+    text
+}
+
+/// A word in bold and what it says, indented.
+fn told(text: &mut String, word: &str, content: &str, look: Look) {
+    let parts = wrapped(&format!("{word}: {content}"), look.width() - 4);
+    for (k, part) in parts.iter().enumerate() {
+        match part.strip_prefix(word).filter(|_| k == 0) {
+            Some(rest) => line(text, &format!("    {}{rest}", look.paint("1", word))),
+            None => line(text, &format!("    {part}")),
+        }
+    }
+}
+
+impl std::fmt::Display for Diagnosis {
+    fn fmt(&self, f: &mut std::fmt::Formatter<'_>) -> std::fmt::Result {
+        let mut text = String::new();
+        diagnosis(&mut text, self, None, Look { width: 100, colour: false });
+        f.write_str(text.trim_end())
+    }
+}
+
+/// `result` is one of the subject's: its command begins with the program.
+fn diagnosis(text: &mut String, found: &Diagnosis, result: Option<&CheckResult>, look: Look) {
+    let word = if found.confident { "cause" } else { "cause?" };
+    let cause = found.cause.as_ref().map_or(String::new(), |c| format!(" [{c}]"));
+    told(text, word, &format!("{}{cause}", found.statement), look);
+    if let Some(repair) = &found.repair {
+        told(text, "repair", repair, look);
+    }
+    for evidence in &found.evidence {
+        told(text, "since", evidence, look);
+    }
+    if let Some(model) = &found.textbook {
+        told(text, "taken for", model, look);
+    }
+    if let Some(p) = found.p_after_repair {
+        told(text, "after the repair", &format!("p = {}", probability(p.0.log10())), look);
+    }
+    if let Some(other) = &found.runner_up {
+        told(text, "next", other, look);
+    }
+    if let Some(slug) = &found.cause {
+        let program = result.and_then(|r| r.command.split(' ').next()).unwrap_or("gonio");
+        told(text, "more", &format!("{program} explain {slug}"), look);
+    }
+}
+
+fn block(text: &mut String, kind: &[&CheckResult], found: Option<&Diagnosis>, look: Look) {
     let result = kind[0];
     let verdict =
         look.paint(code(result.verdict), &format!("{} {}", symbol(result.verdict), result.verdict.word()));
@@ -258,10 +318,8 @@ fn block(text: &mut String, kind: &[&CheckResult], causes: &[&Diagnosis], look: 
     if let Some(reason) = result.reason.as_ref().filter(|r| **r != result.message) {
         indented(text, reason, 4, look);
     }
-    for d in causes {
-        let p = probability(d.p_after_repair.0.log10());
-        let cause = format!("cause: {} [{}]; repair: {} (then p = {p})", d.statement, d.cause, d.repair);
-        indented(text, &cause, 4, look);
+    if let Some(found) = found {
+        diagnosis(text, found, Some(result), look);
     }
     // Whole, so that it can be copied.
     line(text, &format!("    $ {}", result.command));
@@ -402,12 +460,15 @@ pub(super) mod tests {
             ],
             diagnoses: vec![Diagnosis {
                 subject: "ggx:alpha=0.5".into(),
-                cause: "missing-jacobian".into(),
-                statement: "pdf lacks the factor 1/(4 wo·m)".into(),
-                repair: "divide by 4 wo·m".into(),
-                p_after_repair: Figure(0.43),
-                runner_up: None,
-                evidence: Vec::new(),
+                cause: Some("half-vector-jacobian".into()),
+                confident: true,
+                statement: "pdf() lacks the factor 1/(4 wo·h)".into(),
+                repair: Some("divide by 4 wo·h".into()),
+                p_after_repair: Some(Figure(0.43)),
+                runner_up: Some("pdf() is 4 times too large [constant-factor], 812.0 nats behind".into()),
+                evidence: vec!["this fits 12 cells of 64".into()],
+                textbook: Some("torrance-sparrow".into()),
+                page: Some("docs/causes/half-vector-jacobian.md".into()),
             }],
         }
     }
