@@ -47,12 +47,7 @@ impl Diagnosis {
         let (statement, repair) = match (confident, rival) {
             (true, _) => (first.statement.clone(), first.repair.clone()),
             (false, Some(other)) => (
-                format!(
-                    "one of these two: {}; or {} [{}]",
-                    first.statement,
-                    other.statement,
-                    other.cause.slug()
-                ),
+                format!("one of these two: {}; or {}", named(first), named(other)),
                 format!("{}; or {}", first.repair, other.repair),
             ),
             (false, None) => (format!("not certain: {}", first.statement), first.repair.clone()),
@@ -80,8 +75,13 @@ fn page(cause: Cause) -> String {
     format!("docs/causes/{}.md", cause.slug())
 }
 
+/// With its slug.
+fn named(claim: &Claim) -> String {
+    format!("{} [{}]", claim.statement, claim.cause.slug())
+}
+
 fn runner_up(behind: f64, claim: &Claim) -> String {
-    format!("{} [{}], {behind:.1} nats behind", claim.statement, claim.cause.slug())
+    format!("{}, {behind:.1} nats behind", named(claim))
 }
 
 fn fails(finding: &Finding) -> bool {
@@ -165,7 +165,8 @@ fn of_wi<'a>(places: impl Iterator<Item = &'a Place>, eta: Option<f64>) -> Strin
     match counts.first() {
         None => String::new(),
         Some((words, n)) if *n == all => format!(", {words}"),
-        Some((words, n)) => format!(", worst {words} ({n} of {all} places)"),
+        Some((words, n)) if 2 * n > all => format!(", worst {words} ({n} of {all} places)"),
+        Some(_) => ", in all kinds of places".into(),
     }
 }
 
@@ -195,4 +196,96 @@ fn refracted(wo: Direction, eta: f64) -> Option<Direction> {
     let (x, y) = (-wo.x * ratio, -wo.y * ratio);
     let cos2 = 1.0 - x * x - y * y;
     (cos2 > 0.0).then(|| Direction::new(x, y, -cos2.sqrt() * wo.z.signum()))
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use crate::checks::Outcome;
+    use crate::engine::{Options, run};
+    use crate::registry::Registry;
+    use crate::suite::{Overrides, load};
+
+    /// Cases of `subject`, of which those that `at` picks fail: (θ of wo, wi) of the worst.
+    fn failing(subject: &str, theta: &str, at: impl Fn(f64, Direction) -> Option<Direction>) -> String {
+        let text = format!(
+            "[suite]\nname = \"s\"\nsamples = 4096\nphi = 17\ntheta = {theta}\n[[subject]]\nuse = \"{subject}\""
+        );
+        let only = Overrides { checks: vec!["sanity".into()], ..Overrides::default() };
+        let plan = load("s", &text, &Registry::builtin(), &only).unwrap().plan;
+        let mut results = run(&plan, &Options::default(), &mut |_| {});
+        for case in &mut results.cases {
+            let wo = case.case.wo();
+            if let Some(wi) = at(case.case.theta_deg, wo) {
+                let worst = Some(Place::pair(wo, wi));
+                case.findings[0].outcome = Outcome { worst, ..Outcome::new(Verdict::Fail, "wrong") };
+            }
+        }
+        region(&results.cases.iter().collect::<Vec<_>>())
+    }
+
+    #[test]
+    fn places_are_told_in_words() {
+        let grazing = Direction::from_angles(1.5, 2.0);
+        let five = "[0, 30, 60, 75, 85]";
+        for (subject, theta, at, words) in [
+            ("lambert", five, (|_, wo: Direction| Some(wo.mirrored())) as fn(f64, Direction) -> _, "worst"),
+            (
+                "lambert",
+                five,
+                |t, _| (t > 59.0).then_some(Direction::from_angles(1.5, 2.0)),
+                "from 60° to 85°",
+            ),
+            (
+                "lambert",
+                five,
+                |t, wo| (t == 30.0).then_some(wo.mirrored()),
+                "at θ of wo 30°, in reflection near",
+            ),
+            (
+                "dielectric",
+                "[30, 75, 105, 150]",
+                |t, wo| (t > 90.0).then_some(wo.mirrored()),
+                "only on the back",
+            ),
+            ("dielectric", "[30, 60]", |_, wo| Some(-wo), "in transmission"),
+        ] {
+            let told = failing(subject, theta, at);
+            assert!(told.starts_with("sanity fails at ") && told.contains(words), "{told}");
+        }
+        assert_eq!(where_is(grazing, grazing, None), "in reflection near the horizon");
+        assert_eq!(
+            where_is(grazing, grazing.mirrored(), None),
+            "in reflection near the mirror direction and near the horizon"
+        );
+        assert_eq!(
+            where_is(Direction::NORMAL, -Direction::NORMAL, Some(1.5)),
+            "in transmission near the refracted direction"
+        );
+        assert!(refracted(Direction::from_angles(2.0, 0.0), 1.5).is_none(), "total reflection");
+    }
+
+    fn said(ranked: Vec<(f64, Claim)>, confident: bool) -> Diagnosis {
+        let verdict = diagnosis::Verdict { ranked, confident, textbook: None };
+        Diagnosis::new("s".into(), verdict, &[])
+    }
+
+    #[test]
+    fn doubt_is_told_as_doubt() {
+        let claim = |cause, what: &str| Claim::new(cause, what, format!("mend {what}"));
+        let (a, b) = (claim(Cause::Masking, "A").because("C"), claim(Cause::Frame, "B"));
+        let sure = said(vec![(-1.0, a.clone()), (-9.0, b.clone())], true);
+        assert_eq!((sure.statement.as_str(), sure.cause.as_deref()), ("A", Some("masking")));
+        assert_eq!(sure.runner_up.as_deref(), Some("B [frame], 8.0 nats behind"));
+        assert_eq!((sure.evidence.len(), sure.page.as_deref()), (1, Some("docs/causes/masking.md")));
+        let two = said(vec![(-1.0, a.clone()), (-2.0, b)], false);
+        assert_eq!(two.statement, "one of these two: A [masking]; or B [frame]");
+        assert_eq!(two.repair.as_deref(), Some("mend A; or mend B"));
+        assert_eq!((two.confident, two.evidence.len()), (false, 2));
+        let vague = said(vec![(-18.0, a)], false);
+        assert_eq!((vague.statement.as_str(), vague.runner_up), ("not certain: A", None));
+        let none = said(Vec::new(), false);
+        assert!(none.statement.starts_with("none of the explanations fits"));
+        assert_eq!((none.cause, none.repair, none.page), (None, None, None));
+    }
 }

@@ -9,6 +9,10 @@ use std::fmt::Write;
 /// Kinds of failure that are told in full; of the others only the number.
 const BLOCKS: usize = 10;
 
+/// What was counted is hardly chance below this, which has two reasons.
+const UNLIKELY: f64 = 1e-6;
+const DOUBT: &str = ": something else may be wrong too, or cells were integrated too coarsely";
+
 /// Characters of a column of the matrix.
 const COLUMN: usize = 4;
 
@@ -232,8 +236,7 @@ fn blocks(text: &mut String, report: &Report, look: Look) {
         indented(text, &format!("and more: {}; all are in the report", parts.join(", ")), 0, look);
     }
     for found in report.diagnoses.iter().filter(|d| !told.contains(&d.subject)).take(BLOCKS) {
-        let cause = found.cause.as_ref().map_or(String::new(), |c| format!(" [{c}]"));
-        indented(text, &format!("{}: {}{cause}", found.subject, found.statement), 0, look);
+        indented(text, &format!("{}: {}", found.subject, named(found)), 0, look);
     }
 }
 
@@ -246,6 +249,14 @@ pub fn diagnoses(report: &Report, look: Look) -> String {
         diagnosis(&mut text, found, report.results.iter().find(of), look);
     }
     text
+}
+
+/// The statement with the slug, unless it has that already.
+fn named(found: &Diagnosis) -> String {
+    match found.cause.as_ref().map(|slug| format!("[{slug}]")) {
+        Some(slug) if !found.statement.contains(&slug) => format!("{} {slug}", found.statement),
+        _ => found.statement.clone(),
+    }
 }
 
 /// A word in bold and what it says, indented.
@@ -269,9 +280,7 @@ impl std::fmt::Display for Diagnosis {
 
 /// `result` is one of the subject's: its command begins with the program.
 fn diagnosis(text: &mut String, found: &Diagnosis, result: Option<&CheckResult>, look: Look) {
-    let word = if found.confident { "cause" } else { "cause?" };
-    let cause = found.cause.as_ref().map_or(String::new(), |c| format!(" [{c}]"));
-    told(text, word, &format!("{}{cause}", found.statement), look);
+    told(text, "cause", &named(found), look);
     if let Some(repair) = &found.repair {
         told(text, "repair", repair, look);
     }
@@ -282,9 +291,11 @@ fn diagnosis(text: &mut String, found: &Diagnosis, result: Option<&CheckResult>,
         told(text, "taken for", model, look);
     }
     if let Some(p) = found.p_after_repair {
-        told(text, "after the repair", &format!("p = {}", probability(p.0.log10())), look);
+        let more = if p.0 < UNLIKELY { DOUBT } else { "" };
+        told(text, "after the repair", &format!("p = {}{more}", probability(p.0.log10())), look);
     }
-    if let Some(other) = &found.runner_up {
+    // What is not certain names its rival.
+    if let Some(other) = found.runner_up.as_ref().filter(|_| found.confident) {
         told(text, "next", other, look);
     }
     if let Some(slug) = &found.cause {
@@ -513,6 +524,42 @@ pub(super) mod tests {
             assert_eq!(text.lines().filter(|l| l.contains("$ ")).count(), BLOCKS);
             assert!(text.contains("and more: ") && text.contains("(fail)"));
         }
+    }
+
+    #[test]
+    fn a_doubtful_cause_has_no_next_and_none_has_no_slug() {
+        let found = report().diagnoses.remove(0);
+        let doubtful = Diagnosis { confident: false, p_after_repair: Some(Figure(0.0)), ..found };
+        let text = doubtful.to_string();
+        assert!(text.contains("p = 0: something else may be wrong too") && !text.contains("next"), "{text}");
+        let none = Diagnosis {
+            cause: None,
+            repair: None,
+            p_after_repair: None,
+            runner_up: None,
+            evidence: Vec::new(),
+            textbook: None,
+            page: None,
+            statement: "none of the explanations fits: energy fails".into(),
+            ..doubtful
+        };
+        assert_eq!(none.to_string(), "    cause: none of the explanations fits: energy fails");
+    }
+
+    #[test]
+    fn subjects_beyond_the_blocks_have_a_line_each() {
+        let mut report = report();
+        let found = report.diagnoses[0].clone();
+        for k in 0..20 {
+            let name = format!("model-{k}");
+            report.results.push(result(&name, "energy", 30.0, Verdict::Fail));
+            report.diagnoses.push(Diagnosis { subject: name, ..found.clone() });
+        }
+        let text = summary(&report, &[], Look { width: 90, colour: false });
+        assert!(text.contains("\nmodel-18: pdf() lacks the factor 1/(4 wo·h) [half-vector-jacobian]\n"));
+        assert_eq!(text.matches("half-vector-jacobian]").count(), 2 * BLOCKS);
+        let all = diagnoses(&report, Look { width: 90, colour: false });
+        assert_eq!(all.matches("half-vector-jacobian]").count(), 21);
     }
 
     #[test]
