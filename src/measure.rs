@@ -5,8 +5,10 @@ use crate::bsdf::{
     SubjectKind, Transport,
 };
 use crate::checks::Verdict;
+use crate::diagnosis::diagnose_here;
 use crate::engine::{self, Options, Results};
 use crate::registry::Parameters;
+use crate::report::Diagnosis;
 use crate::suite::{Case, Plan, Settings};
 use std::sync::Arc;
 use std::time::Duration;
@@ -77,7 +79,8 @@ impl<S: Subject> Subject for Lent<'_, S> {
 
 /// Runs every check on `bsdf` at six directions (twelve where it transmits or
 /// is two-sided, in each of its modes of transport), on this thread, for at
-/// most `time_cap`; cases that time does not reach are skipped.
+/// most `time_cap`; cases that time does not reach are skipped. What is wrong with
+/// it [`diagnose_here`] says of the results.
 pub fn measure<S: Subject>(bsdf: &S, settings: Settings, time_cap: Duration) -> Results<'_> {
     let description = crate::evidence::Meter::describe(bsdf);
     let (name, kind, claims) = match &description {
@@ -113,8 +116,8 @@ pub fn measure<S: Subject>(bsdf: &S, settings: Settings, time_cap: Duration) -> 
     engine::run_here(&plan, &Options { deadline: Some(time_cap), ..Options::default() })
 }
 
-/// Panics unless `bsdf` passes every check that it claims, with each failure
-/// in the message. The seed is fixed: the same code cannot pass and fail.
+/// Panics unless `bsdf` passes every check that it claims, with each failure and
+/// the cause in the message. The seed is fixed: the same code cannot pass and fail.
 /// Takes at most about ten seconds; what was not reached by then is told on
 /// stderr, and is no failure.
 ///
@@ -146,5 +149,11 @@ pub fn assert_valid<S: Subject>(bsdf: &S) {
             }
         }
     }
-    assert!(message.is_empty(), "gonio found the BSDF wrong:{message}");
+    if message.is_empty() {
+        return;
+    }
+    for found in Diagnosis::all(&results, diagnose_here(&results, &[])) {
+        message.push_str(&format!("\n{found}"));
+    }
+    panic!("gonio found the BSDF wrong:{message}");
 }

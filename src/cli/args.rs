@@ -35,7 +35,7 @@ pub enum Command {
     List(list::ListArgs),
     /// Print the manual's page on a kind of bug, or list them.
     Explain(explain::ExplainArgs),
-    /// Draw the pictures of a saved report again.
+    /// Draw the pictures of a saved report again, and tell its diagnoses.
     Report(report::ReportArgs),
     /// Draw the figures of a lecture on reflection, from the built-in models.
     Figures(figures::FiguresArgs),

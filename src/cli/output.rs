@@ -2,6 +2,7 @@
 
 use super::args::{Color, Voice};
 use super::error::CliError;
+use crate::report::Look;
 use std::io::{ErrorKind, IsTerminal, Write, stderr, stdout};
 use std::path::Path;
 
@@ -36,6 +37,12 @@ impl Voice {
                 stderr().is_terminal() && std::env::var_os("NO_COLOR").is_none_or(|v| v.is_empty())
             }
         }
+    }
+
+    /// How pages are laid out.
+    pub fn look(&self) -> Look {
+        let width = std::env::var("COLUMNS").ok().and_then(|c| c.parse().ok()).unwrap_or(100);
+        Look { width, colour: self.colored() }
     }
 
     /// How errors are drawn.

@@ -4,7 +4,7 @@ use super::args::{Plots, Voice};
 use super::error::CliError;
 use super::exit::Exit;
 use super::output::tell;
-use crate::report::{REPORT, Report, SCHEMA_VERSION, redraw};
+use crate::report::{REPORT, Report, SCHEMA_VERSION, diagnoses, redraw};
 use serde::Deserialize;
 use std::path::{Path, PathBuf};
 
@@ -19,7 +19,8 @@ pub struct ReportArgs {
     pub plots: Plots,
 }
 
-/// Draws the pictures of a saved report again.
+/// Draws the pictures of a saved report again, and tells its diagnoses: they were
+/// made with the subject at hand, which evidence is not.
 pub fn report(args: &ReportArgs, voice: Voice) -> Result<Exit, CliError> {
     let (folder, report) = read(&args.folder)?;
     let drawn = match args.plots.which() {
@@ -28,6 +29,9 @@ pub fn report(args: &ReportArgs, voice: Voice) -> Result<Exit, CliError> {
     };
     if !voice.quiet {
         tell(&format!("pictures of {drawn} cases drawn in {}", folder.display()));
+        if !report.diagnoses.is_empty() {
+            tell(diagnoses(&report, voice.look()).trim_end());
+        }
     }
     Ok(Exit::Passed)
 }

@@ -6,10 +6,12 @@ use super::exit::Exit;
 use super::interrupt::stop_on_interrupt;
 use super::output::{emit, prove_writable, tell};
 use super::progress::Progress;
+use crate::diagnosis::{Explanation, diagnose_all};
 use crate::engine::{self, Event, Options};
 use crate::registry::{Registry, nearest};
 use crate::report::{
-    FileError, Files, Look, REPORT, Report, draw_results, evidence_of, summary, write_evidence, write_report,
+    Diagnosis, FileError, Files, REPORT, Report, draw_results, evidence_of, summary, write_evidence,
+    write_report,
 };
 use crate::suite::{EMBEDDED, Expanded, Plan, embedded, load, reproduce};
 use std::collections::BTreeMap;
@@ -46,11 +48,13 @@ pub struct Request {
     pub strict: bool,
     /// Combinations of parameters that were left out since their model refuses them.
     pub refused: usize,
+    /// Explanations of failures besides those that come with gonio.
+    pub explanations: Arc<Vec<Box<dyn Explanation>>>,
 }
 
 impl Request {
     /// These plans, with what was typed.
-    pub fn new(plans: Vec<Plan<'static>>, measuring: &Measuring) -> Self {
+    pub fn new(plans: Vec<Plan<'static>>, measuring: &Measuring, registry: &Registry) -> Self {
         Self {
             plans,
             out: measuring.out.clone(),
@@ -60,6 +64,7 @@ impl Request {
             plots: measuring.plots,
             strict: measuring.strict,
             refused: 0,
+            explanations: Arc::new(registry.explanations()),
         }
     }
 
@@ -94,7 +99,7 @@ impl RunArgs {
             }
             plans.push(plan);
         }
-        Ok(Request { refused, keep: true, ..Request::new(plans, &self.measuring) })
+        Ok(Request { refused, keep: true, ..Request::new(plans, &self.measuring, registry) })
     }
 }
 
@@ -180,7 +185,8 @@ fn run(
         evidence: &|case| folder.as_ref().and_then(|_| evidence_of(case)),
         plot: &|case| plots.get(&case.index).cloned(),
     };
-    let report = Report::new(plan, &results, started, &files);
+    let diagnosed = diagnose_all(&results, &request.explanations, &options);
+    let report = Report::new(plan, &results, started, &files).diagnosed(Diagnosis::all(&results, diagnosed));
     let written = folder.as_ref().map(|folder| write_report(folder, &report)).transpose();
     if !voice.quiet {
         tell(&page(&report, folder.as_deref(), voice));
@@ -205,8 +211,7 @@ fn page(report: &Report, folder: Option<&Path>, voice: Voice) -> String {
         Some(_) => paths.iter().map(|(what, path)| (*what, path.as_str())).collect(),
         None => Vec::new(),
     };
-    let width = std::env::var("COLUMNS").ok().and_then(|c| c.parse().ok()).unwrap_or(100);
-    summary(report, &files, Look { width, colour: voice.colored() })
+    summary(report, &files, voice.look())
 }
 
 /// The name under which this program was called, for commands to type.

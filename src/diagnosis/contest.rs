@@ -9,7 +9,7 @@ use crate::registry::Parameters;
 
 /// By how many nats a claim must beat those of other causes to be named with
 /// confidence.
-const MARGIN: f64 = 5.0;
+pub const MARGIN: f64 = 5.0;
 
 /// What a failed check costs that a claim does not explain.
 const UNEXPLAINED: f64 = 20.0;

@@ -22,15 +22,17 @@ mod parts;
 mod pdf;
 mod sampler;
 mod shares;
+mod subjects;
 mod support;
 mod textbook;
 mod value;
 mod view;
 mod weight;
 
-pub use contest::{Verdict, diagnose};
+pub use contest::{MARGIN, Verdict, diagnose};
 pub use counts::{CountTest, Counts};
 pub use explanation::{Claim, Explanation};
 pub use parts::{At, Parts};
+pub use subjects::{Diagnosed, diagnose_all, diagnose_here};
 pub use textbook::{Lobe, Textbook};
 pub use view::{Point, Seen, View};

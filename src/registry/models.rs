@@ -5,6 +5,7 @@ use super::model::Model;
 use super::parameter::{Kind, Parameters, Value};
 use super::spelling::{Spelling, parenthesised};
 use crate::bsdf::{Subject, SubjectKind};
+use crate::diagnosis::{Explanation, Textbook, View};
 use crate::{models, mutants};
 use std::borrow::Cow;
 use std::sync::Arc;
@@ -18,6 +19,8 @@ pub struct Registry {
     models: Arc<Vec<Model>>,
     /// Found by their names, but not listed.
     hidden: Option<fn(&str) -> Option<Model>>,
+    /// Explanations of failures besides those that come with gonio.
+    explanations: Vec<Arc<dyn Explanation>>,
 }
 
 impl Registry {
@@ -28,7 +31,7 @@ impl Registry {
 
     /// The models that come with gonio, and its mutants, which are not listed.
     pub fn builtin() -> Self {
-        Self { models: Arc::new(models::all()), hidden: Some(mutants::model) }
+        Self { models: Arc::new(models::all()), hidden: Some(mutants::model), ..Self::default() }
     }
 
     /// Adds a model; one of the same name is replaced.
@@ -37,6 +40,39 @@ impl Registry {
         models.retain(|m| m.name() != model.name());
         models.push(model);
         self
+    }
+
+    /// Adds an explanation of failures, which competes with those that come with
+    /// gonio wherever a subject is diagnosed.
+    ///
+    /// ```
+    /// use gonio::cause::Cause;
+    /// use gonio::diagnosis::{Claim, Textbook, View};
+    /// use gonio::registry::Registry;
+    ///
+    /// /// Our old shaders return a density of 1 wherever they have none.
+    /// fn placeholder(view: &View, _: Option<&Textbook>) -> Vec<Claim> {
+    ///     if view.cases.iter().flat_map(|case| &case.points).any(|point| point.pdf != 1.0) {
+    ///         return Vec::new();
+    ///     }
+    ///     vec![Claim::new(Cause::ConstantFactor, "pdf() is the placeholder 1", "write pdf()")]
+    /// }
+    ///
+    /// let registry = Registry::builtin().explanation(placeholder);
+    /// assert_eq!(registry.explanations().len(), 1);
+    /// ```
+    pub fn explanation(mut self, explanation: impl Explanation + 'static) -> Self {
+        self.explanations.push(Arc::new(explanation));
+        self
+    }
+
+    /// The explanations that were added.
+    pub fn explanations(&self) -> Vec<Box<dyn Explanation>> {
+        let boxed = |shared: &Arc<dyn Explanation>| -> Box<dyn Explanation> {
+            let shared = shared.clone();
+            Box::new(move |view: &View, book: Option<&Textbook>| shared.claims(view, book))
+        };
+        self.explanations.iter().map(boxed).collect()
     }
 
     /// All models that are listed.

@@ -1,6 +1,8 @@
 //! Results of a run to a report.
 
-use super::json::{AttemptRow, CheckResult, Machine, Report, SCHEMA_VERSION, SubjectId, Summary, WoAngles};
+use super::json::{
+    AttemptRow, CheckResult, Diagnosis, Machine, Report, SCHEMA_VERSION, SubjectId, Summary, WoAngles,
+};
 use crate::checks::Verdict;
 use crate::engine::{CaseResult, Finding, Results};
 use crate::evidence::{Figure, Meter};
@@ -62,6 +64,11 @@ impl Report {
             results: rows,
             diagnoses: Vec::new(),
         }
+    }
+
+    /// The same with what is wrong with failing subjects.
+    pub fn diagnosed(self, diagnoses: Vec<Diagnosis>) -> Self {
+        Self { diagnoses, ..self }
     }
 
     /// The same without what differs from run to run: times, and the machine.

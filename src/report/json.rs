@@ -163,16 +163,23 @@ pub struct AttemptRow {
 pub struct Diagnosis {
     /// Which subject.
     pub subject: String,
-    /// Slug of the cause.
-    pub cause: String,
-    /// One sentence.
+    /// Slug of the cause; `null` where none of the explanations fits.
+    pub cause: Option<String>,
+    /// Whether the cause is named with confidence.
+    pub confident: bool,
+    /// One sentence: what is wrong, or where it is wrong if nothing fits.
     pub statement: String,
     /// What mends it.
-    pub repair: String,
-    /// Probability of what was seen after the repair.
-    pub p_after_repair: Figure,
-    /// The second-best explanation.
+    pub repair: Option<String>,
+    /// Probability of what was counted after the repair, where that was computed.
+    pub p_after_repair: Option<Figure>,
+    /// The next explanation, with its slug, and by how many nats it is behind.
     pub runner_up: Option<String>,
     /// What speaks for it.
     pub evidence: Vec<String>,
+    /// The published model that the subject was recognised as.
+    #[serde(default, skip_serializing_if = "Option::is_none")]
+    pub textbook: Option<String>,
+    /// The manual's page on the cause.
+    pub page: Option<String>,
 }

@@ -9,6 +9,10 @@ use std::fmt::Write;
 /// Kinds of failure that are told in full; of the others only the number.
 const BLOCKS: usize = 10;
 
+/// What was counted is hardly chance below this, which has two reasons.
+const UNLIKELY: f64 = 1e-6;
+const DOUBT: &str = ": something else may be wrong too, or cells were integrated too coarsely";
+
 /// Characters of a column of the matrix.
 const COLUMN: usize = 4;
 
@@ -210,13 +214,13 @@ fn kinds(report: &Report) -> Vec<Vec<&CheckResult>> {
 
 fn blocks(text: &mut String, report: &Report, look: Look) {
     let kinds = kinds(report);
-    let mut diagnosed = BTreeSet::new();
+    let mut told = BTreeSet::new();
     for kind in kinds.iter().take(BLOCKS) {
         line(text, "");
         let subject = &kind[0].subject.name;
-        let told = kind[0].verdict == Verdict::Fail && diagnosed.insert(subject);
-        let causes = report.diagnoses.iter().filter(|d| told && d.subject == *subject);
-        block(text, kind, &causes.collect::<Vec<_>>(), look);
+        let first = matches!(kind[0].verdict, Verdict::Error | Verdict::Fail) && told.insert(subject);
+        let found = report.diagnoses.iter().find(|d| first && d.subject == *subject);
+        block(text, kind, found, look);
     }
     if kinds.len() > BLOCKS {
         let mut counts: BTreeMap<(Verdict, &str), usize> = BTreeMap::new();
@@ -231,9 +235,76 @@ fn blocks(text: &mut String, report: &Report, look: Look) {
             .collect();
         indented(text, &format!("and more: {}; all are in the report", parts.join(", ")), 0, look);
     }
+    for found in report.diagnoses.iter().filter(|d| !told.contains(&d.subject)).take(BLOCKS) {
+        indented(text, &format!("{}: {}", found.subject, named(found)), 0, look);
+    }
 }
 
-fn block(text: &mut String, kind: &[&CheckResult], causes: &[&Diagnosis], look: Look) {
+/// What is wrong with each failing subject, by itself.
+pub fn diagnoses(report: &Report, look: Look) -> String {
+    let mut text = String::new();
+    for found in &report.diagnoses {
+        line(&mut text, &look.paint("1", &found.subject));
+        let of = |r: &&CheckResult| r.subject.name == found.subject;
+        diagnosis(&mut text, found, report.results.iter().find(of), look);
+    }
+    text
+}
+
+/// The statement with the slug, unless it has that already.
+fn named(found: &Diagnosis) -> String {
+    match found.cause.as_ref().map(|slug| format!("[{slug}]")) {
+        Some(slug) if !found.statement.contains(&slug) => format!("{} {slug}", found.statement),
+        _ => found.statement.clone(),
+    }
+}
+
+/// A word in bold and what it says, indented.
+fn told(text: &mut String, word: &str, content: &str, look: Look) {
+    let parts = wrapped(&format!("{word}: {content}"), look.width() - 4);
+    for (k, part) in parts.iter().enumerate() {
+        match part.strip_prefix(word).filter(|_| k == 0) {
+            Some(rest) => line(text, &format!("    {}{rest}", look.paint("1", word))),
+            None => line(text, &format!("    {part}")),
+        }
+    }
+}
+
+impl std::fmt::Display for Diagnosis {
+    fn fmt(&self, f: &mut std::fmt::Formatter<'_>) -> std::fmt::Result {
+        let mut text = String::new();
+        diagnosis(&mut text, self, None, Look { width: 100, colour: false });
+        f.write_str(text.trim_end())
+    }
+}
+
+/// `result` is one of the subject's: its command begins with the program.
+fn diagnosis(text: &mut String, found: &Diagnosis, result: Option<&CheckResult>, look: Look) {
+    told(text, "cause", &named(found), look);
+    if let Some(repair) = &found.repair {
+        told(text, "repair", repair, look);
+    }
+    for evidence in &found.evidence {
+        told(text, "since", evidence, look);
+    }
+    if let Some(model) = &found.textbook {
+        told(text, "taken for", model, look);
+    }
+    if let Some(p) = found.p_after_repair {
+        let more = if p.0 < UNLIKELY { DOUBT } else { "" };
+        told(text, "after the repair", &format!("p = {}{more}", probability(p.0.log10())), look);
+    }
+    // What is not certain names its rival.
+    if let Some(other) = found.runner_up.as_ref().filter(|_| found.confident) {
+        told(text, "next", other, look);
+    }
+    if let Some(slug) = &found.cause {
+        let program = result.and_then(|r| r.command.split(' ').next()).unwrap_or("gonio");
+        told(text, "more", &format!("{program} explain {slug}"), look);
+    }
+}
+
+fn block(text: &mut String, kind: &[&CheckResult], found: Option<&Diagnosis>, look: Look) {
     let result = kind[0];
     let verdict =
         look.paint(code(result.verdict), &format!("{} {}", symbol(result.verdict), result.verdict.word()));
@@ -258,10 +329,8 @@ fn block(text: &mut String, kind: &[&CheckResult], causes: &[&Diagnosis], look: 
     if let Some(reason) = result.reason.as_ref().filter(|r| **r != result.message) {
         indented(text, reason, 4, look);
     }
-    for d in causes {
-        let p = probability(d.p_after_repair.0.log10());
-        let cause = format!("cause: {} [{}]; repair: {} (then p = {p})", d.statement, d.cause, d.repair);
-        indented(text, &cause, 4, look);
+    if let Some(found) = found {
+        diagnosis(text, found, Some(result), look);
     }
     // Whole, so that it can be copied.
     line(text, &format!("    $ {}", result.command));
@@ -402,12 +471,15 @@ pub(super) mod tests {
             ],
             diagnoses: vec![Diagnosis {
                 subject: "ggx:alpha=0.5".into(),
-                cause: "missing-jacobian".into(),
-                statement: "pdf lacks the factor 1/(4 wo·m)".into(),
-                repair: "divide by 4 wo·m".into(),
-                p_after_repair: Figure(0.43),
-                runner_up: None,
-                evidence: Vec::new(),
+                cause: Some("half-vector-jacobian".into()),
+                confident: true,
+                statement: "pdf() lacks the factor 1/(4 wo·h)".into(),
+                repair: Some("divide by 4 wo·h".into()),
+                p_after_repair: Some(Figure(0.43)),
+                runner_up: Some("pdf() is 4 times too large [constant-factor], 812.0 nats behind".into()),
+                evidence: vec!["this fits 12 cells of 64".into()],
+                textbook: Some("torrance-sparrow".into()),
+                page: Some("docs/causes/half-vector-jacobian.md".into()),
             }],
         }
     }
@@ -452,6 +524,42 @@ pub(super) mod tests {
             assert_eq!(text.lines().filter(|l| l.contains("$ ")).count(), BLOCKS);
             assert!(text.contains("and more: ") && text.contains("(fail)"));
         }
+    }
+
+    #[test]
+    fn a_doubtful_cause_has_no_next_and_none_has_no_slug() {
+        let found = report().diagnoses.remove(0);
+        let doubtful = Diagnosis { confident: false, p_after_repair: Some(Figure(0.0)), ..found };
+        let text = doubtful.to_string();
+        assert!(text.contains("p = 0: something else may be wrong too") && !text.contains("next"), "{text}");
+        let none = Diagnosis {
+            cause: None,
+            repair: None,
+            p_after_repair: None,
+            runner_up: None,
+            evidence: Vec::new(),
+            textbook: None,
+            page: None,
+            statement: "none of the explanations fits: energy fails".into(),
+            ..doubtful
+        };
+        assert_eq!(none.to_string(), "    cause: none of the explanations fits: energy fails");
+    }
+
+    #[test]
+    fn subjects_beyond_the_blocks_have_a_line_each() {
+        let mut report = report();
+        let found = report.diagnoses[0].clone();
+        for k in 0..20 {
+            let name = format!("model-{k}");
+            report.results.push(result(&name, "energy", 30.0, Verdict::Fail));
+            report.diagnoses.push(Diagnosis { subject: name, ..found.clone() });
+        }
+        let text = summary(&report, &[], Look { width: 90, colour: false });
+        assert!(text.contains("\nmodel-18: pdf() lacks the factor 1/(4 wo·h) [half-vector-jacobian]\n"));
+        assert_eq!(text.matches("half-vector-jacobian]").count(), 2 * BLOCKS);
+        let all = diagnoses(&report, Look { width: 90, colour: false });
+        assert_eq!(all.matches("half-vector-jacobian]").count(), 21);
     }
 
     #[test]
