@@ -47,16 +47,20 @@ pub fn diagnose<'a, 's: 'a>(
     parameters: &Parameters,
 ) -> Option<Verdict> {
     let view = View::gather(cases, parameters)?;
-    let book = Textbook::of(&view);
+    let books = Textbook::of(&view);
     let all = explanation::all();
-    let mut claims: Vec<(f64, Claim)> = all
-        .iter()
-        .chain(more)
-        .flat_map(|e| e.claims(&view, book.as_ref()))
-        .filter(|c| c.covers.iter().any(|check| view.failed.contains(check)))
-        .map(|c| (score(&c, &view), c))
-        .filter(|(score, _)| *score > NOTHING_FITS)
-        .collect();
+    let explained = |book: Option<&Textbook>| -> Vec<Claim> {
+        all.iter().chain(more).flat_map(|e| e.claims(&view, book)).collect()
+    };
+    let mut claims: Vec<(f64, Claim)> = match books.is_empty() {
+        true => explained(None),
+        false => books.iter().flat_map(|b| explained(Some(b))).collect(),
+    }
+    .into_iter()
+    .filter(|c| c.covers.iter().any(|check| view.failed.contains(check)))
+    .map(|c| (score(&c, &view), c))
+    .filter(|(score, _)| *score > NOTHING_FITS)
+    .collect();
     claims.sort_by(|a, b| b.0.total_cmp(&a.0));
     let mut ranked: Vec<(f64, Claim)> = Vec::new();
     for claim in claims {
@@ -69,7 +73,7 @@ pub fn diagnose<'a, 's: 'a>(
         [(_, only)] => only.price < SAYS_LITTLE,
         [(a, first), (b, _), ..] => a - b >= MARGIN && first.price < SAYS_LITTLE,
     };
-    Some(Verdict { ranked, confident, textbook: book.map(|b| b.name) })
+    Some(Verdict { ranked, confident, textbook: books.into_iter().next().map(|b| b.name) })
 }
 
 fn score(claim: &Claim, view: &View) -> f64 {

@@ -187,7 +187,7 @@ impl Counts {
     /// Mass of each leaf from the density's values at [`directions`](Self::directions).
     fn masses_of(&self, values: &[f64], strict: bool) -> Vec<f64> {
         let sum = |(leaf, (values, nodes)): (usize, (&[f64], &[(Direction, f64)]))| {
-            if values.iter().all(|v| v.is_nan()) {
+            if values.iter().all(|v| v.is_nan() || *v == 0.0) {
                 // Between the nodes there is something.
                 return if self.own.get(leaf).is_some_and(|m| *m > 0.0) { f64::NAN } else { 0.0 };
             }

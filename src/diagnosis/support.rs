@@ -1,7 +1,7 @@
 //! Where functions are positive and should not be, or the other way round.
 
 use super::counts::CountTest;
-use super::explanation::{Claim, DENSITY, VALUE};
+use super::explanation::{Claim, DENSITY, VAGUE, VALUE};
 use super::pdf::{counts, follows};
 use super::textbook::{EQUAL, Textbook};
 use super::view::{Point, Seen, View};
@@ -234,7 +234,7 @@ fn leaks(view: &View, book: Option<&Textbook>) -> Vec<Claim> {
                 "test the same sides and horizon in both functions",
             )
             .covers(LEAK)
-            .price(4.0),
+            .price(VAGUE),
         ];
     };
     // Is there to be light?

@@ -76,11 +76,11 @@ impl Agreement {
 }
 
 impl Textbook {
-    /// The model that agrees best with the functions of a subject, with the
-    /// parameters that both declare; `None` where none agrees with any function.
-    pub fn of(view: &View) -> Option<Self> {
-        let registry = registry();
-        let mut best: Option<(f64, Self)> = None;
+    /// The models that the functions of a subject agree with best, with the parameters
+    /// that both declare: none where none agrees with any function, and two where one
+    /// has the subject's pdf() and its sibling the density of the draws.
+    pub fn of(view: &View) -> Vec<Self> {
+        let mut all: Vec<(f64, Self)> = Vec::new();
         let mut consider = |mut book: Self| {
             book.agrees = book.agreement(view);
             let known = book.parameters.0.keys().filter(|name| view.parameters.0.contains_key(*name));
@@ -91,22 +91,39 @@ impl Textbook {
             let whole = f64::from(u8::from(agrees.by_pdf())) + f64::from(u8::from(agrees.by_value()));
             let score = 4.0 * whole + 2.0 * known + agrees.pdf + agrees.value;
             // One side or one mode may be what is wrong.
-            let somewhere = agrees.pdf.max(agrees.value) > 0.24;
-            if somewhere && best.as_ref().is_none_or(|(s, _)| score > *s) {
-                best = Some((score, book));
+            if agrees.pdf.max(agrees.value) > 0.24 {
+                all.push((score, book));
             }
         };
-        for model in registry.models().filter(|m| m.kind() == view.description.kind) {
+        for model in registry().models().filter(|m| m.kind() == view.description.kind) {
             if model.kind() != SubjectKind::Fresnel {
                 let books = combinations(model, &view.parameters);
                 books.iter().filter_map(|p| Self::new(model.name(), p)).for_each(&mut consider);
             }
         }
         // Where nothing is declared, numbers are those that fit.
-        if !view.parameters.0.values().any(|v| matches!(v, Value::Number(_))) {
+        if !view.declares_numbers {
             super::fitting::fitted(view).into_iter().for_each(&mut consider);
         }
-        best.map(|(_, book)| book)
+        all.sort_by(|a, b| b.0.total_cmp(&a.0));
+        let mut all = all.into_iter().map(|(_, book)| book);
+        let Some(best) = all.next() else { return Vec::new() };
+        let sibling = best.sibling_of_the_draws(view, all);
+        std::iter::once(best).chain(sibling).collect()
+    }
+
+    /// Of the models that differ in nothing but their sampler, the one that draws as
+    /// the subject does, where this one does not.
+    fn sibling_of_the_draws(&self, view: &View, others: impl Iterator<Item = Self>) -> Option<Self> {
+        let drawn = ["goodness-of-fit", "normalization", "jacobian"];
+        if !view.fails_any(&drawn) || view.parameters.0.contains_key("sampling") {
+            return None;
+        }
+        let mut siblings = others.filter(|b| b.name == self.name && b.agrees.by_value()).peekable();
+        siblings.peek()?;
+        let counts = super::pdf::counts(view);
+        let follows = |book: &Self| super::pdf::follows(view, book, &counts).fits();
+        if follows(self) { None } else { siblings.find(follows) }
     }
 
     /// The model called `name`.

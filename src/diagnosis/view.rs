@@ -4,7 +4,7 @@ use crate::bsdf::{Cosine, Description, Direction, Lobe, Samples, Spectrum, Subje
 use crate::checks::Verdict;
 use crate::engine::CaseResult;
 use crate::evidence::{Evidence, guarded};
-use crate::registry::Parameters;
+use crate::registry::{Parameters, Value};
 use crate::statistics::streams::StreamKey;
 use std::collections::BTreeSet;
 
@@ -69,6 +69,8 @@ pub struct View<'a> {
     pub description: Description,
     /// The parameters that it declares.
     pub parameters: Parameters,
+    /// Whether any of these is a number.
+    pub declares_numbers: bool,
     /// Checks that failed somewhere.
     pub failed: BTreeSet<&'static str>,
     /// Its cases: failing ones, and of the others some.
@@ -95,12 +97,17 @@ impl<'a> View<'a> {
         }
         let mut view = Self {
             description: evidence.description.clone(),
+            declares_numbers: parameters.0.values().any(|v| matches!(v, Value::Number(_))),
             parameters: parameters.clone(),
             failed: failed_anywhere,
             cases: Vec::new(),
             reference: first.case.company.reference.as_ref().map(|(_, subject)| &**subject as _),
             subject: &*first.case.subject,
         };
+        // A claim declares as much.
+        if let Some(eta) = view.description.claims.eta {
+            view.parameters.0.entry("eta".into()).or_insert(Value::Number(eta));
+        }
         // Those that fail most first; away from the normal, where terms differ.
         let mut order: Vec<_> = measured.iter().collect();
         let oblique = |c: &CaseResult| c.case.wo().z.abs() < 0.9999;
@@ -219,8 +226,8 @@ impl<'a> View<'a> {
     /// A declared number.
     pub fn number(&self, name: &str) -> Option<f64> {
         match self.parameters.0.get(name)? {
-            crate::registry::Value::Number(v) => Some(*v),
-            crate::registry::Value::Text(_) => None,
+            Value::Number(v) => Some(*v),
+            Value::Text(_) => None,
         }
     }
 }
