@@ -227,3 +227,16 @@ fn the_gallery_s_links_lead_somewhere() {
     }
     assert_eq!(page.matches("    cause: ").count(), 5);
 }
+
+/// Some mutants of each cause with random parameters: the right cause first, as often as
+/// calibration asks for, and no wrong one with confidence.
+#[test]
+fn causes_are_named_at_random_parameters() {
+    let rows = gonio::calibration::quick_diagnoses(7);
+    let wrong: Vec<_> = rows.iter().filter_map(|r| r.declared.wrong.as_ref()).collect();
+    let sum =
+        |of: fn(&gonio::calibration::Named) -> usize| rows.iter().map(|r| of(&r.declared)).sum::<usize>();
+    assert!(sum(|n| n.confirmed) >= 60, "{rows:?}");
+    assert!(10 * sum(|n| n.first) >= 9 * sum(|n| n.confirmed), "{wrong:?}");
+    assert_eq!(sum(|n| n.confidently_wrong), 0, "{wrong:?}");
+}

@@ -5,11 +5,12 @@ use super::work::{Effort, Work};
 use crate::cause::Cause;
 use crate::checks::Verdict;
 use crate::diagnosis::diagnose;
-use crate::engine::CaseResult;
+use crate::engine::{CaseResult, Options, Results, run_here};
 use crate::mutants::{Mutant, STRENGTH, all};
 use crate::registry::{Parameters, Registry};
 use crate::statistics::streams::StreamKey;
 use crate::suite::{Overrides, Plan, load};
+use rayon::prelude::*;
 use serde::{Deserialize, Serialize};
 use std::collections::BTreeMap;
 
@@ -84,20 +85,54 @@ struct Said {
 type Trial = Option<(Said, Option<Said>)>;
 
 impl Confusion {
-    /// Diagnoses every mutant that some check must fail.
+    /// Diagnoses every mutant that some check must fail; a few of each cause where time
+    /// is short.
     pub(super) fn measure(work: &Work) -> Result<Self, Unfinished> {
-        let trials = if work.effort == Effort::Quick { 1 } else { TRIALS };
-        let mutants: Vec<Mutant> = all().into_iter().filter(|m| !m.must_fail.is_empty()).collect();
-        work.begin("diagnoses", mutants.len() * trials as usize);
         let registry = Registry::builtin();
-        let row = |mutant: &Mutant| {
-            let seeds: Vec<u64> = (0..trials).map(|k| work.seed + k).collect();
-            let key = format!("diagnoses/{}", mutant.name);
-            work.unit(&key, &seeds, |seed| trial(mutant, *seed, &registry, work), |t| row_of(mutant, &t))
+        let (quick, run) = (work.effort == Effort::Quick, |plan: &Plan<'static>| work.run(plan));
+        let mutants = if quick { few() } else { failing() };
+        let (trials, alone) = if quick { (1, 0) } else { (TRIALS, UNDECLARED) };
+        work.begin("diagnoses", mutants.len() * trials as usize);
+        let rows = if quick {
+            // One step each: all of them are a unit.
+            let one = |mutant: &Mutant| row_of(mutant, &[trial(mutant, work.seed, false, &registry, &run)]);
+            work.unit("diagnoses", &mutants, one, |rows| rows)?
+        } else {
+            let row = |mutant: &Mutant| {
+                let seeds: Vec<u64> = (0..trials).collect();
+                let one = |k: &u64| trial(mutant, work.seed + k, *k < alone, &registry, &run);
+                work.unit(&format!("diagnoses/{}", mutant.name), &seeds, one, |t| row_of(mutant, &t))
+            };
+            mutants.iter().map(row).collect::<Result<_, _>>()?
         };
-        let rows = mutants.iter().map(row).collect::<Result<_, _>>()?;
         Ok(Self { trials, samples: SAMPLES, rows })
     }
+}
+
+/// Mutants that a check must fail: only what fails is diagnosed.
+fn failing() -> Vec<Mutant> {
+    all().into_iter().filter(|m| !m.must_fail.is_empty()).collect()
+}
+
+/// Some of each cause.
+fn few() -> Vec<Mutant> {
+    const EACH: usize = 3;
+    let mut taken: BTreeMap<Option<Cause>, usize> = BTreeMap::new();
+    let mut few = failing();
+    few.retain(|m| {
+        let n = taken.entry(m.cause).or_default();
+        *n += 1;
+        *n <= EACH
+    });
+    few
+}
+
+/// Rows of some mutants of each cause, made at once: for tests.
+pub fn quick_diagnoses(seed: u64) -> Vec<Diagnosed> {
+    let (registry, mutants) = (Registry::builtin(), few());
+    let run = |plan: &Plan<'static>| run_here(plan, &Options::default());
+    let row = |m: &Mutant| row_of(m, &[trial(m, seed, false, &registry, &run)]);
+    mutants.par_iter().with_max_len(1).map(row).collect()
 }
 
 /// The suite of a mutant with random parameters.
@@ -157,9 +192,15 @@ fn plan(mutant: &Mutant, seed: u64, registry: &Registry) -> Plan<'static> {
     expanded.unwrap_or_else(|e| panic!("{}: {e:?}\n{text}", mutant.name)).plan
 }
 
-fn trial(mutant: &Mutant, seed: u64, registry: &Registry, work: &Work) -> Trial {
+fn trial(
+    mutant: &Mutant,
+    seed: u64,
+    undeclared: bool,
+    registry: &Registry,
+    run: &(dyn Fn(&Plan<'static>) -> Results<'static> + Sync),
+) -> Trial {
     let plan = plan(mutant, seed, registry);
-    let results = work.run(&plan);
+    let results = run(&plan);
     let cases: Vec<&CaseResult> = results.cases.iter().collect();
     let failed = |c: &&CaseResult| matches!(c.worst(), Verdict::Fail | Verdict::Error);
     let first = cases.iter().copied().find(failed)?;
@@ -176,8 +217,7 @@ fn trial(mutant: &Mutant, seed: u64, registry: &Registry, work: &Work) -> Trial 
             ranked,
         }
     };
-    let alone = seed.wrapping_sub(work.seed) < UNDECLARED;
-    Some((says(&declared), alone.then(|| says(&Parameters::default()))))
+    Some((says(&declared), undeclared.then(|| says(&Parameters::default()))))
 }
 
 fn row_of(mutant: &Mutant, trials: &[Trial]) -> Diagnosed {

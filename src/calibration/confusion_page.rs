@@ -95,8 +95,10 @@ impl Part for Confusion {
             format!("Where the model's parameters are declared: {}.\n", told(&declared)),
         ];
         lines.extend(self.table(|r| &r.declared));
-        lines.push(format!("\nWhere nothing is declared: {}.\n", told(&undeclared)));
-        lines.extend(self.table(|r| &r.undeclared));
+        if undeclared.confirmed > 0 {
+            lines.push(format!("\nWhere nothing is declared: {}.\n", told(&undeclared)));
+            lines.extend(self.table(|r| &r.undeclared));
+        }
         lines.push("\nCauses that no measurement tells apart count as one:\n".into());
         for row in self.rows.iter().filter(|r| !r.equivalent.is_empty()) {
             for (cause, why) in &row.equivalent {
@@ -140,10 +142,12 @@ impl Part for Confusion {
     }
 
     fn summary(&self) -> Vec<String> {
-        let named = |which: fn(&Diagnosed) -> &Named| told(&sum(self.rows.iter().map(which)));
-        vec![
-            format!("diagnoses: {}", named(|r| &r.declared)),
-            format!("  without declared parameters: {}", named(|r| &r.undeclared)),
-        ]
+        let named = |which: fn(&Diagnosed) -> &Named| sum(self.rows.iter().map(which));
+        let (declared, undeclared) = (named(|r| &r.declared), named(|r| &r.undeclared));
+        let mut lines = vec![format!("diagnoses: {}", told(&declared))];
+        if undeclared.confirmed > 0 {
+            lines.push(format!("  without declared parameters: {}", told(&undeclared)));
+        }
+        lines
     }
 }

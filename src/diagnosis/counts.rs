@@ -186,11 +186,13 @@ impl Counts {
 
     /// Mass of each leaf from the density's values at [`directions`](Self::directions).
     fn masses_of(&self, values: &[f64], strict: bool) -> Vec<f64> {
-        let sum = |(leaf, (values, nodes)): (usize, (&[f64], &[(Direction, f64)]))| {
+        let of_leaf = |(leaf, values): (usize, &[f64])| {
             if values.iter().all(|v| v.is_nan() || *v == 0.0) {
                 // Between the nodes there is something.
-                return if self.own.get(leaf).is_some_and(|m| *m > 0.0) { f64::NAN } else { 0.0 };
+                let lost = strict && self.own.get(leaf).is_some_and(|m| *m > 0.0);
+                return if lost { f64::NAN } else { 0.0 };
             }
+            let nodes = &self.nodes[9 * leaf..];
             let sum: f64 = values.iter().zip(nodes).map(|(p, (_, w))| p * w).sum();
             let steep = steepness(values);
             let alike = self.steepness.get(leaf).is_some_and(|own| (steep / own).ln().abs() < ALIKE);
@@ -200,7 +202,7 @@ impl Counts {
                 _ => sum,
             }
         };
-        values.chunks_exact(9).zip(self.nodes.chunks_exact(9)).enumerate().map(sum).collect()
+        values.chunks_exact(9).enumerate().map(of_leaf).collect()
     }
 
     /// Compares counts with masses; `fitted` numbers were fitted to them. Leaves

@@ -109,7 +109,8 @@ fn unsound(view: &View, book: Option<&Textbook>) -> Vec<Claim> {
                 "look at the input below: what is divided, rooted or raised to a power there",
             )
             .covers(if negative { UNSOUND } else { ISOLATED })
-            .price(3.0),
+            .price(3.0)
+            .because(input(view)),
         ];
     }
     let mut claims = Vec::new();
@@ -211,7 +212,8 @@ fn unsound(view: &View, book: Option<&Textbook>) -> Vec<Claim> {
                 "look at the input below: what is divided, rooted or raised to a power there",
             )
             .covers(UNSOUND)
-            .price(3.0),
+            .price(3.0)
+            .because(input(view)),
         );
     } else if claims.is_empty() {
         // Half of the numbers u are unsound by how a lobe was chosen, or by a wrong map.
@@ -242,6 +244,23 @@ fn unsound(view: &View, book: Option<&Textbook>) -> Vec<Claim> {
         }
     }
     claims
+}
+
+/// The worst input, in words.
+fn input(view: &View) -> String {
+    let tallies = view.cases.iter().flat_map(|s| &s.evidence.sanity.tallies);
+    let Some((sentence, place)) = tallies.filter_map(|(s, t)| Some((s, t.place.as_ref()?))).next() else {
+        return view
+            .cases
+            .iter()
+            .flat_map(|s| &s.evidence.halts)
+            .next()
+            .map_or_else(|| "no input is on record".into(), |(_, halt)| format!("{halt}"));
+    };
+    let angles = |w: Direction| format!("θ {:.3}°, φ {:.3}°", w.theta().to_degrees(), w.phi().to_degrees());
+    let wi = place.wi.filter(|w| w.is_finite()).map_or(String::new(), |w| format!(", wi {}", angles(w)));
+    let u = if place.u.is_empty() { String::new() } else { format!(", u = {:?}", place.u) };
+    format!("`{sentence}` does not hold at wo {}{wi}{u}", angles(place.wo))
 }
 
 /// Whether draws are unsound in one lobe by its choice: those with the first number

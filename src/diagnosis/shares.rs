@@ -59,16 +59,13 @@ fn solve(rows: &[(Vec<f64>, f64, f64)]) -> Option<Vec<f64>> {
     for i in 0..n {
         let pivot = (i..n).max_by(|p, q| a[*p][i].abs().total_cmp(&a[*q][i].abs()))?;
         a.swap(i, pivot);
-        if a[i][i].abs() < 1e-300 {
+        let row = a[i].clone();
+        if row[i].abs() < 1e-300 {
             return None;
         }
-        for k in 0..n {
-            if k != i {
-                let factor = a[k][i] / a[i][i];
-                for j in i..=n {
-                    a[k][j] -= factor * a[i][j];
-                }
-            }
+        for (_, other) in a.iter_mut().enumerate().filter(|(k, _)| *k != i) {
+            let factor = other[i] / row[i];
+            other.iter_mut().zip(&row).for_each(|(x, y)| *x -= factor * y);
         }
     }
     Some((0..n).map(|i| a[i][n] / a[i][i]).collect())
