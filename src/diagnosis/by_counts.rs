@@ -7,7 +7,7 @@ use super::mistakes::{Mistake, PDF};
 use super::parts::{At, Parts};
 use super::pdf::least;
 use super::view::View;
-use crate::bsdf::{Direction, Transport};
+use crate::bsdf::{Direction, SubjectKind, Transport};
 use crate::cause::Cause;
 use crate::models::microfacet::{Distribution, Roughness};
 
@@ -38,7 +38,9 @@ impl Case<'_> {
 /// Claims about pdf().
 pub fn by_counts(view: &View, counts: &[(usize, Counts)]) -> Vec<Claim> {
     let mut claims = Vec::new();
-    if counts.len() < 2 || !view.fails_any(&["goodness-of-fit", "normalization"]) {
+    let kind = view.description.kind;
+    if kind != SubjectKind::Bsdf || counts.len() < 2 || !view.fails_any(&["goodness-of-fit", "normalization"])
+    {
         return claims;
     }
     let case = |(k, counts): &'_ (usize, Counts)| {
