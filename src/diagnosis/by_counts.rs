@@ -4,8 +4,8 @@ use super::counts::{CountTest, Counts};
 use super::deviation::Free;
 use super::explanation::{COUNTED_NUMBER, Claim};
 use super::mistakes::{Mistake, PDF};
+use super::numbers::least;
 use super::parts::{At, Parts};
-use super::pdf::least;
 use super::view::View;
 use crate::bsdf::{Direction, SubjectKind, Transport};
 use crate::cause::Cause;
@@ -79,8 +79,7 @@ fn of_factor(m: &Mistake, cases: &[Case], parts: &Parts) -> Option<Claim> {
     // A factor that is not known where pdf() is says nothing.
     let (mut known, mut all, mut telling) = (0, 0, 0);
     for (c, factors) in cases.iter().zip(&factors) {
-        for (p, f) in c.pdf.iter().zip(factors).filter(|(p, _)| **p > 0.0) {
-            let _ = p;
+        for (_, f) in c.pdf.iter().zip(factors).filter(|(p, _)| **p > 0.0) {
             all += 1;
             known += usize::from(f.is_some());
             telling += usize::from(f.is_some_and(|f| f.ln().abs() > 0.02));

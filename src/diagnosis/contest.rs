@@ -27,6 +27,10 @@ pub struct Verdict {
     pub ranked: Vec<(f64, Claim)>,
     /// Whether the first is named with confidence.
     pub confident: bool,
+    /// Failed checks that the first does not explain: another bug's.
+    pub unexplained: Vec<&'static str>,
+    /// What may be that other bug.
+    pub another: Option<Claim>,
     /// The published model that was recognised.
     pub textbook: Option<String>,
 }
@@ -62,6 +66,11 @@ pub fn diagnose<'a, 's: 'a>(
     .filter(|(score, _)| *score > NOTHING_FITS)
     .collect();
     claims.sort_by(|a, b| b.0.total_cmp(&a.0));
+    let unexplained: Vec<&'static str> = match claims.first() {
+        Some((_, first)) => view.failed.iter().copied().filter(|c| !first.covers.contains(c)).collect(),
+        None => Vec::new(),
+    };
+    let another = another(&claims, &unexplained);
     let mut ranked: Vec<(f64, Claim)> = Vec::new();
     for claim in claims {
         if !ranked.iter().any(|(_, c)| c.cause == claim.1.cause) {
@@ -73,7 +82,23 @@ pub fn diagnose<'a, 's: 'a>(
         [(_, only)] => only.price < SAYS_LITTLE,
         [(a, first), (b, _), ..] => a - b >= MARGIN && first.price < SAYS_LITTLE,
     };
-    Some(Verdict { ranked, confident, textbook: books.into_iter().next().map(|b| b.name) })
+    Some(Verdict {
+        ranked,
+        confident,
+        unexplained,
+        another,
+        textbook: books.into_iter().next().map(|b| b.name),
+    })
+}
+
+/// The best claim of another cause that explains all that the first does not.
+fn another(claims: &[(f64, Claim)], unexplained: &[&str]) -> Option<Claim> {
+    let (_, first) = claims.first()?;
+    let fits =
+        |c: &&Claim| c.cause != first.cause && unexplained.iter().all(|check| c.covers.contains(check));
+    let own = |c: &Claim| c.ln_likelihood - c.price;
+    let others = claims.iter().map(|(_, c)| c).filter(fits).filter(|c| c.price < SAYS_LITTLE);
+    others.max_by(|a, b| own(a).total_cmp(&own(b))).filter(|_| !unexplained.is_empty()).cloned()
 }
 
 fn score(claim: &Claim, view: &View) -> f64 {

@@ -1,15 +1,14 @@
 //! Textbooks for subjects that declare nothing of their parts: numbers are fitted to
 //! what the functions return.
 
-use super::pdf::least;
+use super::numbers::{median_error, nearest};
 use super::textbook::Textbook;
-use super::view::{Point, Seen, View};
+use super::view::View;
 use crate::bsdf::SubjectKind;
 use crate::registry::{Kind, Registry};
 
-/// Cases and points of each that numbers are fitted to.
-const CASES: usize = 4;
-const STRIDE: usize = 16;
+/// Numbers are fitted to every so many-th point.
+const STRIDE: usize = 24;
 
 /// Models whose tables take a millisecond or more to make, or that have more numbers
 /// than can be told from one function.
@@ -84,11 +83,10 @@ fn descend(book: &mut Textbook, view: &View, unknown: &[String], to: To) -> f64 
             if off < EXACT {
                 return off;
             }
-            let Some(value) = book.number(name) else { continue };
-            let Some((better, at)) = nearest(book, view, name, value, to) else { continue };
+            let Some(better) = nearest(book, name, |b| error(b, view, to)) else { continue };
             moving += 1;
-            if at < off && !(settled && error(&better, view, To::Pdf) > EXACT) {
-                (*book, off) = (better, at);
+            if better.loss < off && !(settled && error(&better.book, view, To::Pdf) > EXACT) {
+                (*book, off) = (better.book, better.loss);
             }
         }
         // A single number is as good as it gets.
@@ -99,38 +97,12 @@ fn descend(book: &mut Textbook, view: &View, unknown: &[String], to: To) -> f64 
     off
 }
 
-/// The model with the number that fits best; `None` where it changes nothing.
-fn nearest(book: &Textbook, view: &View, name: &str, value: f64, to: To) -> Option<(Textbook, f64)> {
-    let with = |ln: f64| book.with(name, if value == 0.0 { 0.1 * ln.exp() } else { value * ln.exp() });
-    let at = |ln: f64| with(ln).map_or(f64::INFINITY, |b| error(&b, view, to));
-    let here = at(0.0);
-    if [-0.5, 0.2].map(at).iter().all(|l| !l.is_finite() || (l - here).abs() < 1e-12) {
-        return None;
-    }
-    const STEP: f64 = 0.2;
-    let steps = (-18..=18).map(|k| f64::from(k) * STEP).map(|ln| (ln, at(ln)));
-    let best = steps.filter(|s| s.1.is_finite()).min_by(|a, b| a.1.total_cmp(&b.1))?.0;
-    let ln = least(best - STEP, best + STEP, 44, at);
-    let better = with(ln)?;
-    let off = error(&better, view, to);
-    Some((better, off))
-}
-
-/// Median of |ln(own/theirs)| where both are positive.
+/// Median error of a function.
 fn error(book: &Textbook, view: &View, to: To) -> f64 {
-    let mut off: Vec<f64> = Vec::new();
-    let mut look = |seen: &Seen, p: &Point| {
-        let (own, theirs) = match to {
-            To::Pdf => (p.pdf, book.pdf(seen.wo, p.wi)),
-            To::Value => (p.value[0], book.eval(seen.wo, p.wi, seen.transport)[0]),
-        };
-        if own > 0.0 || theirs > 0.0 {
-            off.push((own / theirs).ln().abs());
-        }
-    };
-    for seen in view.cases.iter().take(CASES) {
-        seen.points.iter().step_by(STRIDE).for_each(|p| look(seen, p));
-    }
-    off.sort_by(f64::total_cmp);
-    if off.len() < 12 { f64::INFINITY } else { off[off.len() / 2] }
+    median_error(view, STRIDE, |s, p| {
+        Some(match to {
+            To::Pdf => (p.pdf, book.pdf(s.wo, p.wi)),
+            To::Value => (p.value[0], book.eval(s.wo, p.wi, s.transport)[0]),
+        })
+    })
 }

@@ -217,7 +217,7 @@ fn unsound(view: &View, book: Option<&Textbook>) -> Vec<Claim> {
         );
     } else if claims.is_empty() {
         // Half of the numbers u are unsound by how a lobe was chosen, or by a wrong map.
-        let by_lobe = lobes > 1 && book.is_some_and(|b| split_by_share(view, b, &raws));
+        let by_lobe = lobes > 1 && book.is_some_and(|b| split_by_share(b, &raws));
         if by_lobe {
             claims.push(
                 Claim::new(
@@ -265,8 +265,7 @@ fn input(view: &View) -> String {
 
 /// Whether draws are unsound in one lobe by its choice: those with the first number
 /// on one side of the lobes' border, or near it.
-fn split_by_share(view: &View, book: &Textbook, raws: &[(&Seen, Raw)]) -> bool {
-    let _ = view;
+fn split_by_share(book: &Textbook, raws: &[(&Seen, Raw)]) -> bool {
     raws.iter().filter(|(s, _)| s.wo.z > 0.0).all(|(seen, r)| {
         let share = (book.lobes[0].share)(seen.wo);
         let (mut below, mut above) = ([0usize; 2], [0usize; 2]);

@@ -18,6 +18,7 @@ mod functions;
 mod inputs;
 mod lobes;
 mod mistakes;
+mod numbers;
 mod parts;
 mod pdf;
 mod sampler;

@@ -5,6 +5,7 @@ use super::counts::{CountTest, Counts};
 use super::deviation::{Function, Region, equals, fit, from_textbook};
 use super::explanation::{Claim, EXACT_NUMBER};
 use super::mistakes::{Mistake, PDF};
+use super::numbers::{Other, median_error, others};
 use super::textbook::Textbook;
 use super::view::{Point, Seen, View};
 use crate::bsdf::Direction;
@@ -145,27 +146,13 @@ fn whole_functions(view: &View, book: &Textbook) -> Vec<Claim> {
 /// The model with another number.
 fn another_number(view: &View, book: &Textbook) -> Vec<Claim> {
     let mut claims = Vec::new();
-    for (name, value) in book.numbers() {
-        let loss = |book: &Textbook| {
-            let mut off: Vec<f64> = Vec::new();
-            for seen in &view.cases {
-                for p in seen.points.iter().step_by(6) {
-                    let theirs = book.pdf(seen.wo, p.wi);
-                    if theirs > 0.0 && p.pdf > 0.0 {
-                        off.push((p.pdf / theirs).ln().abs());
-                    }
-                }
-            }
-            off.sort_by(f64::total_cmp);
-            off.get(off.len() / 2).copied().unwrap_or(f64::INFINITY)
-        };
-        let Some((found, _)) = nearest(book, &name, value, loss) else { continue };
-        let Some(other) = book.with(&name, found) else { continue };
+    let loss = |book: &Textbook| median_error(view, 6, |s, p| Some((p.pdf, book.pdf(s.wo, p.wi))));
+    for Other { name, declared, found, book: other, .. } in others(book, loss) {
         if let Some(fit) = whole(view, book, |seen, p| Some(other.pdf(seen.wo, p.wi))) {
             claims.push(
                 Claim::new(
                     Cause::WrongDensity,
-                    format!("pdf() is that of {name} = {found:.6}, where {name} = {value} is declared"),
+                    format!("pdf() is that of {name} = {found:.6}, where {name} = {declared} is declared"),
                     format!("give pdf() the same {name} as sample(), after the same mapping and clamping"),
                 )
                 .likelihood(fit.ln_likelihood())
@@ -175,46 +162,4 @@ fn another_number(view: &View, book: &Textbook) -> Vec<Claim> {
         }
     }
     claims
-}
-
-/// The value of a parameter near which `loss` is least; `None` where it changes
-/// nothing.
-pub fn nearest(
-    book: &Textbook,
-    name: &str,
-    value: f64,
-    loss: impl Fn(&Textbook) -> f64,
-) -> Option<(f64, f64)> {
-    let at = |ln: f64| {
-        let x = if value == 0.0 { ln.exp() * 0.1 } else { value * ln.exp() };
-        (x, book.with(name, x).map_or(f64::INFINITY, |b| loss(&b)))
-    };
-    const STEP: f64 = 0.25;
-    let here = at(0.0).1;
-    if [-1.0, -0.3, 0.3].map(|ln| at(ln).1).iter().all(|l| !l.is_finite() || (l - here).abs() < 1e-12) {
-        return None;
-    }
-    // From 1/150 to 150 times as large: degrees taken for radians are within.
-    let steps: Vec<(f64, f64)> = (-20..=20).map(|k| f64::from(k) * STEP).map(|ln| (ln, at(ln).1)).collect();
-    let best = steps.iter().filter(|s| s.1.is_finite()).min_by(|a, b| a.1.total_cmp(&b.1))?.0;
-    Some(at(least(best - STEP, best + STEP, 40, |ln| at(ln).1)))
-}
-
-/// Where a function of one number is least, by golden sections.
-pub fn least(mut lo: f64, mut hi: f64, sections: usize, f: impl Fn(f64) -> f64) -> f64 {
-    const GOLDEN: f64 = 0.381_966_011_250_105;
-    let (mut a, mut b) = (lo + GOLDEN * (hi - lo), hi - GOLDEN * (hi - lo));
-    let (mut fa, mut fb) = (f(a), f(b));
-    for _ in 0..sections {
-        if fa < fb {
-            (hi, b, fb) = (b, a, fa);
-            a = lo + GOLDEN * (hi - lo);
-            fa = f(a);
-        } else {
-            (lo, a, fa) = (a, b, fb);
-            b = hi - GOLDEN * (hi - lo);
-            fb = f(b);
-        }
-    }
-    0.5 * (lo + hi)
 }

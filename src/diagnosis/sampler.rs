@@ -2,8 +2,9 @@
 
 use super::counts::{CountTest, Counts};
 use super::explanation::{COUNTED_NUMBER, Claim, VAGUE};
+use super::numbers::{Other, least, others};
 use super::parts::At;
-use super::pdf::{counts, follows, least, nearest};
+use super::pdf::{counts, follows};
 use super::textbook::{Textbook, sampling};
 use super::view::{Drawn, View};
 use crate::bsdf::{Direction, Transport};
@@ -215,15 +216,13 @@ impl Scene<'_> {
             }
             sum
         };
-        for (name, value) in book.numbers() {
-            let Some((found, _)) = nearest(book, &name, value, x2) else { continue };
-            let Some(other) = book.with(&name, found) else { continue };
+        for Other { name, declared, found, book: other, .. } in others(book, x2) {
             let test = self.test(1, |wo, wi| other.pdf(wo, wi));
             claims.extend(
                 self.claim(
                     test,
                     Cause::WrongDensity,
-                    format!("sample() draws with {name} = {found:.4}, pdf() has {name} = {value}"),
+                    format!("sample() draws with {name} = {found:.4}, pdf() has {name} = {declared}"),
                     "give both functions the same parameters, after the same mapping and clamping",
                 )
                 .map(|c| c.price(COUNTED_NUMBER)),

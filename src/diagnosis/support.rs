@@ -1,7 +1,7 @@
 //! Where functions are positive and should not be, or the other way round.
 
 use super::counts::CountTest;
-use super::explanation::{Claim, DENSITY, VAGUE, VALUE};
+use super::explanation::{Claim, DENSITY, VAGUE};
 use super::pdf::{counts, follows};
 use super::textbook::{EQUAL, Textbook};
 use super::view::{Point, Seen, View};
@@ -290,6 +290,5 @@ fn leaks(view: &View, book: Option<&Textbook>) -> Vec<Claim> {
             "white-furnace",
         ])];
     }
-    let _ = VALUE;
     Vec::new()
 }

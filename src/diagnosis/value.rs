@@ -3,7 +3,8 @@
 use super::deviation::{Fit, Function, equals, from_textbook};
 use super::explanation::{Claim, EXACT_NUMBER, VALUE};
 use super::mistakes::VALUE as MISTAKES;
-use super::pdf::{nearest, of_region};
+use super::numbers::{Other, median_error, others};
+use super::pdf::of_region;
 use super::textbook::Textbook;
 use super::view::{Point, Seen, View};
 use crate::bsdf::Direction;
@@ -88,29 +89,19 @@ fn whole_functions(view: &View, book: &Textbook) -> Vec<Claim> {
 
 fn another_number(view: &View, book: &Textbook) -> Vec<Claim> {
     let mut claims = Vec::new();
-    for (name, value) in book.numbers() {
-        let loss = |book: &Textbook| {
-            let mut off: Vec<f64> = Vec::new();
-            for seen in &view.cases {
-                for p in seen.points.iter().step_by(6) {
-                    let theirs = book.eval(seen.wo, p.wi, seen.transport)[0];
-                    if theirs > 0.0 && p.value[0] > 0.0 {
-                        off.push((p.value[0] / theirs).ln().abs());
-                    }
-                }
-            }
-            off.sort_by(f64::total_cmp);
-            off.get(off.len() / 2).copied().unwrap_or(f64::INFINITY)
-        };
-        let Some((found, _)) = nearest(book, &name, value, loss) else { continue };
-        let Some(other) = book.with(&name, found) else { continue };
+    let loss = |book: &Textbook| {
+        median_error(view, 6, |s, p| Some((p.value[0], book.eval(s.wo, p.wi, s.transport)[0])))
+    };
+    for Other { name, declared, found, book: other, .. } in others(book, loss) {
         if let Some(fit) = whole(view, book, |s, p, c| Some(other.eval(s.wo, p.wi, s.transport)[c])) {
-            let degrees = (found / value * 180.0 / std::f64::consts::PI - 1.0).abs() < 1e-4;
+            let degrees = (found / declared * 180.0 / std::f64::consts::PI - 1.0).abs() < 1e-4;
             let why = if degrees { ": it is converted from degrees to radians twice" } else { "" };
             claims.push(
                 Claim::new(
                     Cause::Parameter,
-                    format!("eval() is that of {name} = {found:.6}, where {name} = {value} is declared{why}"),
+                    format!(
+                        "eval() is that of {name} = {found:.6}, where {name} = {declared} is declared{why}"
+                    ),
                     format!(
                         "follow {name} from where it is read to where it is used: units, order, defaults"
                     ),

@@ -3,6 +3,7 @@
 use super::deviation::{Ratio, Region, deviates};
 use super::explanation::{Claim, VAGUE, WEIGHT};
 use super::mistakes::WEIGHT as MISTAKES;
+use super::numbers::{Other, median_error, others};
 use super::parts::{At, Parts};
 use super::pdf::of_region;
 use super::textbook::{EQUAL, Textbook};
@@ -24,7 +25,7 @@ pub fn claims(view: &View, book: Option<&Textbook>) -> Vec<Claim> {
     });
     // A wrong pdf() that sample() does not use shows in the weight too.
     if deviates(&told) {
-        claims.extend(of_told(view, book, &told, &weight));
+        claims.extend(of_told(view, book, &told));
     } else if deviates(&weight) {
         claims.extend(of_weight(view, book, weight));
     }
@@ -52,7 +53,7 @@ fn ratios<'p>(
 }
 
 /// sample.pdf is not pdf().
-fn of_told(view: &View, book: Option<&Textbook>, told: &[Ratio], weight: &[Ratio]) -> Vec<Claim> {
+fn of_told(view: &View, book: Option<&Textbook>, told: &[Ratio]) -> Vec<Claim> {
     let mut claims = Vec::new();
     let covers = DRIFT;
     let sizes: Vec<f64> = told.iter().map(|r| (r.observed / r.expected).ln()).collect();
@@ -74,26 +75,15 @@ fn of_told(view: &View, book: Option<&Textbook>, told: &[Ratio], weight: &[Ratio
                 .covers(WEIGHT),
             );
         }
-        for (name, value) in book.numbers() {
-            let off = |book: &Textbook| {
-                let mut off = Vec::new();
-                for seen in &view.cases {
-                    for p in seen.points.iter().filter(|p| p.drawn.is_some()).step_by(6) {
-                        let (told, theirs) =
-                            (p.drawn.as_ref().map_or(0.0, |d| d.told), book.pdf(seen.wo, p.wi));
-                        off.push((told / theirs).ln().abs());
-                    }
-                }
-                off.sort_by(f64::total_cmp);
-                off.get(off.len() / 2).copied().unwrap_or(f64::INFINITY)
-            };
-            let Some((found, _)) = super::pdf::nearest(book, &name, value, off) else { continue };
-            let Some(other) = book.with(&name, found) else { continue };
+        let loss = |book: &Textbook| {
+            median_error(view, 6, |s, p| Some((p.drawn.as_ref()?.told, book.pdf(s.wo, p.wi))))
+        };
+        for Other { name, declared, found, book: other, .. } in others(book, loss) {
             if every(view, |s, p, d| Some((d.told, other.pdf(s.wo, p.wi)))) {
                 claims.push(
                     Claim::new(
                         Cause::ImplementationDrift,
-                        format!("sample() is that of {name} = {found:.6} in all it returns, pdf() and eval() of {name} = {value}"),
+                        format!("sample() is that of {name} = {found:.6} in all it returns, pdf() and eval() of {name} = {declared}"),
                         "let all three functions read the same parameters, and compute them once",
                     )
                     .covers(covers)
@@ -120,7 +110,6 @@ fn of_told(view: &View, book: Option<&Textbook>, told: &[Ratio], weight: &[Ratio
             }
         }
     }
-    let _ = weight;
     if claims.is_empty() && !view.fails_any(&["goodness-of-fit", "normalization"]) {
         claims.push(
             Claim::new(

@@ -27,7 +27,7 @@ impl Diagnosis {
     }
 
     fn new(subject: String, verdict: diagnosis::Verdict, cases: &[&CaseResult]) -> Self {
-        let diagnosis::Verdict { ranked, confident, textbook } = verdict;
+        let diagnosis::Verdict { ranked, confident, unexplained, another, textbook } = verdict;
         let Some((score, first)) = ranked.first() else {
             return Self {
                 subject,
@@ -53,6 +53,13 @@ impl Diagnosis {
             (false, None) => (format!("not certain: {}", first.statement), first.repair.clone()),
         };
         let mut evidence = first.evidence.clone();
+        if !unexplained.is_empty() {
+            let checks = listed(&unexplained);
+            evidence.push(match &another {
+                Some(other) => format!("{checks} must have another cause, as: {}", named(other)),
+                None => format!("{checks} must have another cause, which none of the explanations names"),
+            });
+        }
         if !confident {
             evidence.push(region(cases));
         }
@@ -266,7 +273,8 @@ mod tests {
     }
 
     fn said(ranked: Vec<(f64, Claim)>, confident: bool) -> Diagnosis {
-        let verdict = diagnosis::Verdict { ranked, confident, textbook: None };
+        let verdict =
+            diagnosis::Verdict { ranked, confident, unexplained: Vec::new(), another: None, textbook: None };
         Diagnosis::new("s".into(), verdict, &[])
     }
 
