@@ -18,7 +18,7 @@ use std::collections::BTreeMap;
 const TRIALS: u64 = 20;
 
 /// Of these so many are diagnosed without declared parameters too, which takes longer.
-const UNDECLARED: u64 = 4;
+const UNDECLARED: u64 = 2;
 
 /// Draws at most: what a developer's suite takes.
 const SAMPLES: u64 = 1 << 16;

@@ -52,6 +52,21 @@ pub const DENSITY: &[&str] = &[
     "sanity",
 ];
 
+/// The same where sample() does not take its weight and pdf from a pdf() that is
+/// otherwise right.
+pub const DENSITY_ALONE: &[&str] = &[
+    "goodness-of-fit",
+    "normalization",
+    "support",
+    "albedo",
+    "mis",
+    "jacobian",
+    "sensitivity",
+    "reference",
+    "discrete-lobes",
+    "sanity",
+];
+
 /// Checks that a wrong eval makes fail.
 pub const VALUE: &[&str] = &[
     "reciprocity",

@@ -3,11 +3,12 @@
 use super::by_counts::by_counts;
 use super::counts::{CountTest, Counts};
 use super::deviation::{Function, Region, equals, fit, from_textbook};
-use super::explanation::{Claim, EXACT_NUMBER};
+use super::explanation::{Claim, DENSITY, DENSITY_ALONE, EXACT_NUMBER};
 use super::mistakes::{Mistake, PDF};
 use super::numbers::{Other, median_error, others};
 use super::textbook::Textbook;
 use super::view::{Point, Seen, View};
+use super::weight::mended_by;
 use crate::bsdf::Direction;
 use crate::cause::Cause;
 
@@ -59,8 +60,11 @@ pub fn claims(view: &View, book: Option<&Textbook>) -> Vec<Claim> {
         regions.iter().flat_map(|region| PDF.iter().filter_map(|m| of_region(m, region, "pdf()"))).collect();
     claims.extend(whole_functions(view, book));
     claims.extend(another_number(view, book));
+    let weights = view.fails_any(&["weight", "returned-pdf"]);
+    let covers = if weights && !mended_by(view, book) { DENSITY_ALONE } else { DENSITY };
     // Where the draws do not follow the textbook either, something else is wrong too.
     for claim in &mut claims {
+        claim.covers = covers;
         claim.ln_p = Some(follows.ln_p());
         if !follows.fits() && claim.cause != Cause::RefractionJacobian {
             claim.price += 10.0;

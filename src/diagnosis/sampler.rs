@@ -91,34 +91,39 @@ impl Scene<'_> {
         })
     }
 
+    /// Whatever is drawn is kept until it is above the horizon.
+    fn redrawn(&self) -> Option<Claim> {
+        let (mut test, mut lost, mut all_kept) = (CountTest::default(), 0.0f64, true);
+        for (k, c) in &self.counts {
+            let seen = &self.view.cases[*k];
+            let masses = c.masses(|wi| self.book.pdf(seen.wo, wi));
+            let total: f64 = masses.iter().filter(|m| m.is_finite()).sum();
+            let drawn = c.leaves.iter().sum::<u64>() as f64 / c.draws as f64;
+            // What is missing may be a mirror's share; and nobody draws again to have less.
+            if !seen.discrete.is_empty() || drawn < total * 0.998 {
+                return None;
+            }
+            lost = lost.max(drawn - total);
+            all_kept &= drawn > 0.995;
+            test = test.and(c.test(&masses.iter().map(|m| m * drawn / total).collect::<Vec<_>>(), 1));
+        }
+        if lost < 0.003 {
+            return None;
+        }
+        let claim = self.claim(
+            test,
+            Cause::UnnormalizedRejection,
+            "sample() draws again where a direction falls below the horizon, and pdf() is not divided by the mass that is left above",
+            "return no sample there; or divide pdf() by the mass above the horizon, which depends on wo",
+        )?;
+        // Where some draws are given up, how many is a number for each wo.
+        Some(if all_kept { claim } else { claim.price(COUNTED_NUMBER) })
+    }
+
     fn other_densities(&self) -> Vec<Claim> {
         let (book, view) = (self.book, self.view);
         let mut claims = Vec::new();
-        // Whatever is drawn is kept until it is above.
-        let mut test = CountTest::default();
-        let mut lost = 0.0f64;
-        for (k, c) in &self.counts {
-            let wo = view.cases[*k].wo;
-            let masses = c.masses(|wi| book.pdf(wo, wi));
-            let total: f64 = masses.iter().sum();
-            lost = lost.max(1.0 - total);
-            let drawn = c.leaves.iter().sum::<u64>() as f64 / c.draws as f64;
-            // Some may be left undrawn after as many tries as the code makes.
-            let scale = drawn / total;
-            test = test.and(c.test(&masses.iter().map(|m| m * scale).collect::<Vec<_>>(), 1));
-        }
-        let more = self.counts.iter().any(|(k, c)| {
-            let total: f64 = c.masses(|wi| book.pdf(view.cases[*k].wo, wi)).iter().sum();
-            c.leaves.iter().sum::<u64>() as f64 / c.draws as f64 > total * 1.002
-        });
-        if lost > 0.003 && more {
-            claims.extend(self.claim(
-                test,
-                Cause::UnnormalizedRejection,
-                "sample() draws again where a direction falls below the horizon, and pdf() is not divided by the mass that is left above",
-                "return no sample there; or divide pdf() by the mass above the horizon, which depends on wo",
-            ));
-        }
+        claims.extend(self.redrawn());
         let parts = &book.parts;
         let at = |wo, wi| At::new(parts, wo, wi, Transport::Radiance);
         if parts.distribution.is_some() {
@@ -407,6 +412,17 @@ fn branch_density(
     }
     let slopes: Vec<Direction> =
         (0..d).map(|j| (samples.wi[2 * j + 1] - samples.wi[2 * j]) * (0.5 / STEP)).collect();
+    // A number in steps has no slope, and moves the direction all the same.
+    let far: Vec<f64> = (0..d)
+        .filter(|j| slopes[*j].length() <= 1e-7)
+        .flat_map(|j| {
+            let mut row = drawn.u.clone();
+            row[j] = (row[j] + 0.37).fract();
+            row
+        })
+        .collect();
+    let far = view.sample(wo, &far, transport);
+    let in_steps = (0..far.len()).any(|k| far.lobe[k].is_valid() && (far.wi[k] - *wi).length() > 1e-9);
     let mut active: Vec<Direction> = slopes.iter().copied().filter(|s| s.length() > 1e-7).collect();
     active.sort_by(|a, b| b.length().total_cmp(&a.length()));
     if active.iter().any(|s| s.length() > 1e3 || !s.is_finite()) {
@@ -418,7 +434,10 @@ fn branch_density(
     };
     let flat = active.len() > 1
         && active.iter().all(|s| s.cross(active[0]).length() < 1e-4 * s.length() * active[0].length());
-    Some(Slopes { density: area.filter(|_| !flat).map(|a| 1.0 / a), on_a_curve: flat || active.len() == 1 })
+    Some(Slopes {
+        density: area.filter(|_| !flat).map(|a| 1.0 / a),
+        on_a_curve: flat || (active.len() == 1 && !in_steps),
+    })
 }
 
 struct Slopes {

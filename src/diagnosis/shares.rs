@@ -259,6 +259,15 @@ fn in_sampler(view: &View, book: &Textbook) -> Vec<Claim> {
         let (right, found): (f64, f64) = (m.shares.iter().sum(), m.found.iter().sum());
         (right - found).abs() < 0.01
     });
+    let discrete = view.cases.iter().any(|s| !s.discrete.is_empty());
+    if lobes == 1 && wrong.len() == 1 && discrete {
+        return vec![claim(
+            Cause::LobeProbability,
+            "sample() chooses its discrete lobe with another probability than pdf() leaves to it",
+            "compute the probability in one function that both call, from wo alone",
+            COUNTED_NUMBER,
+        )];
+    }
     if wrong.len() > 1 && sums {
         return vec![claim(
             Cause::LobeProbability,

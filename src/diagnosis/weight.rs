@@ -78,7 +78,8 @@ fn of_told(view: &View, book: Option<&Textbook>, told: &[Ratio]) -> Vec<Claim> {
         let loss = |book: &Textbook| {
             median_error(view, 6, |s, p| Some((p.drawn.as_ref()?.told, book.pdf(s.wo, p.wi))))
         };
-        for Other { name, declared, found, book: other, .. } in others(book, loss) {
+        let others = others(book, loss).into_iter().filter(|o| (o.found / o.declared - 1.0).abs() > 1e-5);
+        for Other { name, declared, found, book: other, .. } in others {
             if every(view, |s, p, d| Some((d.told, other.pdf(s.wo, p.wi)))) {
                 claims.push(
                     Claim::new(
@@ -140,6 +141,15 @@ const DRIFT: &[&str] = &[
 fn chosen_density(book: &Textbook, s: &Seen, p: &Point, d: &Drawn) -> Option<f64> {
     let lobe = book.lobes.iter().find(|l| l.flags.is_some_and(|f| d.lobe.contains(f)))?;
     Some((lobe.density)(s.wo, p.wi))
+}
+
+/// Whether weights and densities of the draws are right with the textbook's pdf: what
+/// is wrong with them goes when pdf() is mended.
+pub fn mended_by(view: &View, book: &Textbook) -> bool {
+    let weight = |s: &Seen, p: &Point, d: &Drawn| {
+        Some((d.weight[0] * book.pdf(s.wo, p.wi), p.value[0] * p.wi.abs_cos_theta()))
+    };
+    every(view, weight) && every(view, |s, p, d| Some((d.told, book.pdf(s.wo, p.wi))))
 }
 
 /// Whether two values are equal at every draw.
