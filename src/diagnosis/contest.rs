@@ -1,6 +1,8 @@
 //! Ranks claims.
 
+use super::counted;
 use super::explanation::{self, Claim, Explanation};
+use super::profile::Profile;
 use super::textbook::Textbook;
 use super::view::View;
 use crate::cause::Cause;
@@ -29,6 +31,8 @@ pub struct Verdict {
     pub confident: bool,
     /// The published model that was recognised.
     pub textbook: Option<String>,
+    /// The counts beside pdf(), where the first is about pdf() or sample().
+    pub profile: Option<Profile>,
 }
 
 impl Verdict {
@@ -73,7 +77,8 @@ pub fn diagnose<'a, 's: 'a>(
         [(_, only)] => only.price < SAYS_LITTLE,
         [(a, first), (b, _), ..] => a - b >= MARGIN && first.price < SAYS_LITTLE,
     };
-    Some(Verdict { ranked, confident, textbook: books.into_iter().next().map(|b| b.name) })
+    let profile = ranked.first_mut().and_then(|(_, first)| counted::tell(&view, &books, first));
+    Some(Verdict { profile, ranked, confident, textbook: books.into_iter().next().map(|b| b.name) })
 }
 
 fn score(claim: &Claim, view: &View) -> f64 {

@@ -27,7 +27,7 @@ impl Diagnosis {
     }
 
     fn new(subject: String, verdict: diagnosis::Verdict, cases: &[&CaseResult]) -> Self {
-        let diagnosis::Verdict { ranked, confident, textbook } = verdict;
+        let diagnosis::Verdict { ranked, confident, textbook, profile: _ } = verdict;
         let Some((score, first)) = ranked.first() else {
             return Self {
                 subject,
@@ -39,6 +39,7 @@ impl Diagnosis {
                 runner_up: None,
                 evidence: Vec::new(),
                 textbook,
+                plot: None,
                 page: None,
             };
         };
@@ -66,6 +67,7 @@ impl Diagnosis {
             runner_up: second.map(|(behind, claim)| runner_up(behind, claim)),
             evidence,
             textbook,
+            plot: None,
             page: Some(page(first.cause)),
         }
     }
@@ -266,7 +268,7 @@ mod tests {
     }
 
     fn said(ranked: Vec<(f64, Claim)>, confident: bool) -> Diagnosis {
-        let verdict = diagnosis::Verdict { ranked, confident, textbook: None };
+        let verdict = diagnosis::Verdict { ranked, confident, textbook: None, profile: None };
         Diagnosis::new("s".into(), verdict, &[])
     }
 
