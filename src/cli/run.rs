@@ -10,8 +10,8 @@ use crate::diagnosis::{Explanation, diagnose_all};
 use crate::engine::{self, Event, Options};
 use crate::registry::{Registry, nearest};
 use crate::report::{
-    Diagnosis, FileError, Files, REPORT, Report, draw_results, evidence_of, summary, write_evidence,
-    write_report,
+    Diagnosis, FileError, Files, REPORT, Report, draw_diagnoses, draw_results, evidence_of, summary,
+    write_evidence, write_report,
 };
 use crate::suite::{EMBEDDED, Expanded, Plan, embedded, load, reproduce};
 use std::collections::BTreeMap;
@@ -186,7 +186,17 @@ fn run(
         plot: &|case| plots.get(&case.index).cloned(),
     };
     let diagnosed = diagnose_all(&results, &request.explanations, &options);
-    let report = Report::new(plan, &results, started, &files).diagnosed(Diagnosis::all(&results, diagnosed));
+    let pictures = match (&folder, request.plots.which()) {
+        (Some(folder), Some(_)) => draw_diagnoses(folder, &diagnosed),
+        _ => Ok(BTreeMap::new()),
+    };
+    let (mut pictures, unwritten) = match pictures {
+        Ok(pictures) => (pictures, unwritten),
+        Err(error) => (BTreeMap::new(), unwritten.or(Some(error))),
+    };
+    let mut diagnoses = Diagnosis::all(&results, diagnosed);
+    diagnoses.iter_mut().for_each(|d| d.plot = pictures.remove(&d.subject));
+    let report = Report::new(plan, &results, started, &files).diagnosed(diagnoses);
     let written = folder.as_ref().map(|folder| write_report(folder, &report)).transpose();
     if !voice.quiet {
         tell(&page(&report, folder.as_deref(), voice));

@@ -1,6 +1,8 @@
 //! Ranks claims.
 
+use super::counted;
 use super::explanation::{self, Claim, Explanation};
+use super::profile::Profile;
 use super::textbook::Textbook;
 use super::view::View;
 use crate::cause::Cause;
@@ -33,6 +35,8 @@ pub struct Verdict {
     pub another: Option<Claim>,
     /// The published model that was recognised.
     pub textbook: Option<String>,
+    /// The counts beside pdf(), where the first is about pdf() or sample().
+    pub profile: Option<Profile>,
 }
 
 impl Verdict {
@@ -82,12 +86,14 @@ pub fn diagnose<'a, 's: 'a>(
         [(_, only)] => only.price < SAYS_LITTLE,
         [(a, first), (b, _), ..] => a - b >= MARGIN && first.price < SAYS_LITTLE,
     };
+    let profile = ranked.first_mut().and_then(|(_, first)| counted::tell(&view, &books, first));
     Some(Verdict {
         ranked,
         confident,
         unexplained,
         another,
         textbook: books.into_iter().next().map(|b| b.name),
+        profile,
     })
 }
 

@@ -29,6 +29,7 @@ const GROUPS: f64 = 48.0;
 const SLACK: f64 = 4e-3;
 
 /// The draws of a case by cell, and where densities are evaluated in each.
+#[derive(Clone)]
 pub struct Counts {
     /// Continuous samples by leaf, of all attempts.
     pub leaves: Vec<u64>,
@@ -44,7 +45,22 @@ pub struct Counts {
     correction: Vec<f64>,
     /// [`steepness`] of the subject's own density, by leaf.
     steepness: Vec<f64>,
+    /// The subject's own density at the nodes.
+    values: Vec<f64>,
 }
+
+/// The subject's own density in a leaf.
+pub(super) struct OwnNodes {
+    /// The middle of the leaf.
+    pub middle: Direction,
+    /// Where it was evaluated, and the mass that each place stands for.
+    pub nodes: [(Direction, f64); 9],
+    /// Whether the rule sees its mass well.
+    pub seen: bool,
+}
+
+/// The rule sees a mass well that it misses by less than this.
+const SEEN: f64 = 0.3;
 
 /// Pearson's statistic of some groups.
 #[derive(Clone, Copy, Debug, Default)]
@@ -151,17 +167,32 @@ impl Counts {
         }
         let own = evidence.integrals.as_ref().map_or(Vec::new(), |i| i.pdf.clone());
         let (others, none) = (draws - counted, Vec::new);
-        let mut counts = Self { leaves, others, draws, own, nodes, correction: none(), steepness: none() };
+        let mut counts =
+            Self { leaves, others, draws, own, nodes, correction: none(), steepness: none(), values: none() };
         let values = pdf(&counts.directions());
         let by_rule = counts.masses_of(&values, false);
         // Densities in question have the peaks of the subject's own, or other ones.
         let correction = |(own, rule): (&f64, &f64)| {
             let ratio = own / rule;
-            if (ratio - 1.0).abs() < 0.3 { ratio } else { 1.0 }
+            if (ratio - 1.0).abs() < SEEN { ratio } else { 1.0 }
         };
         counts.steepness = values.chunks_exact(9).map(steepness).collect();
         counts.correction = counts.own.iter().zip(&by_rule).map(correction).collect();
+        counts.values = values;
         Some(counts)
+    }
+
+    /// The subject's own density in a leaf.
+    pub(super) fn own_nodes(&self, leaf: usize) -> OwnNodes {
+        let correction = self.correction.get(leaf).copied().unwrap_or(1.0);
+        let node = |k: usize| {
+            let (wi, steradians) = self.nodes[9 * leaf + k];
+            (wi, self.values[9 * leaf + k] * steradians * correction)
+        };
+        let nodes: [(Direction, f64); 9] = std::array::from_fn(node);
+        let sum: f64 = nodes.iter().map(|n| n.1).sum();
+        let seen = self.own.get(leaf).is_none_or(|own| (own / sum - 1.0).abs() < SEEN);
+        OwnNodes { middle: self.nodes[9 * leaf + 4].0, nodes, seen }
     }
 
     /// Where densities are evaluated.

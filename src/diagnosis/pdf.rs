@@ -21,7 +21,9 @@ pub fn counts(view: &View) -> Vec<(usize, Counts)> {
         let pdf = |wi: &[Direction]| view.pdf(seen.wo, wi, seen.transport);
         Some((k, Counts::of(seen.evidence, pdf)?))
     };
-    view.cases.iter().enumerate().filter_map(counted).take(COUNTED).collect()
+    let all = || view.cases.iter().enumerate().filter_map(counted).take(COUNTED).collect();
+    // They take thousands of calls of pdf(), and every theme asks for them.
+    view.counted.get_or_init(all).clone()
 }
 
 /// Whether the draws follow the textbook's density.

@@ -1,5 +1,6 @@
 //! What is known of a failing subject.
 
+use super::counts::Counts;
 use crate::bsdf::{Cosine, Description, Direction, Lobe, Samples, Spectrum, Subject, SubjectKind, Transport};
 use crate::checks::Verdict;
 use crate::engine::CaseResult;
@@ -7,6 +8,7 @@ use crate::evidence::{Evidence, guarded};
 use crate::registry::{Parameters, Value};
 use crate::statistics::streams::StreamKey;
 use std::collections::BTreeSet;
+use std::sync::OnceLock;
 
 /// Cases that are looked at: enough directions to tell wo's terms from wi's, on
 /// both sides and in both modes, and no more than that costs.
@@ -77,6 +79,8 @@ pub struct View<'a> {
     pub cases: Vec<Seen<'a>>,
     /// What it was compared with.
     pub reference: Option<&'a dyn Subject>,
+    /// Counts of its first cases, once they were asked for.
+    pub(super) counted: OnceLock<Vec<(usize, Counts)>>,
     subject: &'a dyn Subject,
 }
 
@@ -102,6 +106,7 @@ impl<'a> View<'a> {
             failed: failed_anywhere,
             cases: Vec::new(),
             reference: first.case.company.reference.as_ref().map(|(_, subject)| &**subject as _),
+            counted: OnceLock::new(),
             subject: &*first.case.subject,
         };
         // A claim declares as much.

@@ -142,7 +142,7 @@ pub fn albedo(subject: &str, cases: &[&Evidence]) -> Option<String> {
     Some(figure.finish())
 }
 
-fn error_bar(figure: &mut Figure, ends: [(f64, f64); 2], colour: Rgb) {
+pub(super) fn error_bar(figure: &mut Figure, ends: [(f64, f64); 2], colour: Rgb) {
     figure.line(&ends, Pen::new(colour, 1.6));
     for (x, y) in ends {
         figure.line(&[(x - 5.0, y), (x + 5.0, y)], Pen::new(colour, 1.6));

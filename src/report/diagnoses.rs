@@ -27,7 +27,7 @@ impl Diagnosis {
     }
 
     fn new(subject: String, verdict: diagnosis::Verdict, cases: &[&CaseResult]) -> Self {
-        let diagnosis::Verdict { ranked, confident, unexplained, another, textbook } = verdict;
+        let diagnosis::Verdict { ranked, confident, unexplained, another, textbook, profile: _ } = verdict;
         let Some((score, first)) = ranked.first() else {
             return Self {
                 subject,
@@ -39,6 +39,7 @@ impl Diagnosis {
                 runner_up: None,
                 evidence: Vec::new(),
                 textbook,
+                plot: None,
                 page: None,
             };
         };
@@ -73,6 +74,7 @@ impl Diagnosis {
             runner_up: second.map(|(behind, claim)| runner_up(behind, claim)),
             evidence,
             textbook,
+            plot: None,
             page: Some(page(first.cause)),
         }
     }
@@ -273,8 +275,14 @@ mod tests {
     }
 
     fn said(ranked: Vec<(f64, Claim)>, confident: bool) -> Diagnosis {
-        let verdict =
-            diagnosis::Verdict { ranked, confident, unexplained: Vec::new(), another: None, textbook: None };
+        let verdict = diagnosis::Verdict {
+            ranked,
+            confident,
+            unexplained: Vec::new(),
+            another: None,
+            textbook: None,
+            profile: None,
+        };
         Diagnosis::new("s".into(), verdict, &[])
     }
 

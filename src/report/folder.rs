@@ -1,12 +1,14 @@
 //! A report as a folder: report.json, evidence and pictures.
 
 use super::json::{CheckResult, Report};
-use super::plots::{Pictured, Which, draw};
+use super::plots::{Pictured, Which, draw, file_name};
+use super::ratio_plot;
 use super::saved::{FileError, evidence_path, read_evidence, write_whole};
 use crate::checks::{Verdict, level_p_values};
+use crate::diagnosis::Diagnosed;
 use crate::engine::Results;
 use crate::evidence::Evidence;
-use std::collections::BTreeMap;
+use std::collections::{BTreeMap, BTreeSet};
 use std::path::Path;
 
 /// The file of the report itself.
@@ -36,6 +38,18 @@ pub fn draw_results(
         cases.push(Pictured { index: case.index, group: &case.case.group, evidence, suspicious, root_d });
     }
     draw(folder, &cases, &p_values, which)
+}
+
+/// Draws the pictures of diagnoses; the path of each by its subject.
+pub fn draw_diagnoses(folder: &Path, diagnosed: &[Diagnosed]) -> Result<BTreeMap<String, String>, FileError> {
+    let (mut paths, mut names) = (BTreeMap::new(), BTreeSet::new());
+    for (subject, verdict) in diagnosed {
+        let Some(profile) = &verdict.profile else { continue };
+        let path = format!("plots/diagnosis-{}.svg", file_name(subject, &mut names));
+        write_whole(&folder.join(&path), ratio_plot::ratio(subject, profile).as_bytes())?;
+        paths.insert(subject.clone(), path);
+    }
+    Ok(paths)
 }
 
 /// Draws the pictures of a saved report again from its evidence; how many

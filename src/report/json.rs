@@ -180,6 +180,9 @@ pub struct Diagnosis {
     /// The published model that the subject was recognised as.
     #[serde(default, skip_serializing_if = "Option::is_none")]
     pub textbook: Option<String>,
+    /// Its picture, from the report's folder: the counts over pdf().
+    #[serde(default, skip_serializing_if = "Option::is_none")]
+    pub plot: Option<String>,
     /// The manual's page on the cause.
     pub page: Option<String>,
 }

@@ -18,6 +18,7 @@ mod matrix_plot;
 mod numbers;
 mod plots;
 mod raster;
+mod ratio_plot;
 mod reciprocity_map;
 mod saved;
 mod schema;
@@ -29,7 +30,7 @@ mod wording;
 pub use build::Files;
 pub use curves::{albedo as albedo_curve, p_values as p_value_histogram};
 pub use disc::{Caption, picture as disc_picture};
-pub use folder::{REPORT, draw_results, evidence_of, redraw, write_report};
+pub use folder::{REPORT, draw_diagnoses, draw_results, evidence_of, redraw, write_report};
 pub use histogram::Histogram;
 pub use interval_plot::{Interval, IntervalPlot, IntervalRow};
 pub use json::{

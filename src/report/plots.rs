@@ -100,7 +100,7 @@ fn by_subject<'a>(cases: &[Pictured<'a>]) -> BTreeMap<(&'a str, &'a str), Vec<&'
 }
 
 /// A name that any file system takes, and that no other has.
-fn file_name(text: &str, taken: &mut BTreeSet<String>) -> String {
+pub(super) fn file_name(text: &str, taken: &mut BTreeSet<String>) -> String {
     let words: Vec<&str> = text.split(|c: char| !c.is_ascii_alphanumeric() && c != '.').collect();
     // A group is often named as its only subject is.
     let mut kept: Vec<&str> = words.into_iter().filter(|w| !w.trim_matches('.').is_empty()).collect();

@@ -479,6 +479,7 @@ pub(super) mod tests {
                 runner_up: Some("pdf() is 4 times too large [constant-factor], 812.0 nats behind".into()),
                 evidence: vec!["this fits 12 cells of 64".into()],
                 textbook: Some("torrance-sparrow".into()),
+                plot: None,
                 page: Some("docs/causes/half-vector-jacobian.md".into()),
             }],
         }
@@ -539,6 +540,7 @@ pub(super) mod tests {
             runner_up: None,
             evidence: Vec::new(),
             textbook: None,
+            plot: None,
             page: None,
             statement: "none of the explanations fits: energy fails".into(),
             ..doubtful
