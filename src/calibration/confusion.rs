@@ -2,6 +2,7 @@
 
 use super::progress::Unfinished;
 use super::work::{Effort, Work};
+use crate::bsdf::Transport;
 use crate::cause::Cause;
 use crate::checks::Verdict;
 use crate::diagnosis::diagnose;
@@ -14,17 +15,24 @@ use rayon::prelude::*;
 use serde::{Deserialize, Serialize};
 use std::collections::BTreeMap;
 
-/// Sets of random parameters, each with a seed of its own.
-const TRIALS: u64 = 20;
+/// Sets of random parameters, each with a seed of its own, where no other number is
+/// asked for.
+pub const TRIALS: u64 = 20;
 
-/// Of these so many are diagnosed without declared parameters too, which takes longer.
+/// So many make a unit of work.
+const BATCH: u64 = 4;
+
+/// Of all so many are diagnosed without declared parameters too, which takes longer.
 const UNDECLARED: u64 = 2;
+
+/// How the words of a wrong cause begin that was named with confidence.
+const CONFIDENT: &str = "(confident)";
 
 /// Draws at most: what a developer's suite takes.
 const SAMPLES: u64 = 1 << 16;
 
-/// Polar angles besides those where a mutant shows best, in degrees.
-const THETA: [f64; 3] = [30.0, 55.0, 75.0];
+/// A polar angle besides those where a mutant shows best, in degrees.
+const THETA: f64 = 55.0;
 
 /// How often causes were named for one mutant.
 #[derive(Clone, Debug, Default, PartialEq, Serialize, Deserialize)]
@@ -89,23 +97,57 @@ impl Confusion {
     /// is short.
     pub(super) fn measure(work: &Work) -> Result<Self, Unfinished> {
         let registry = Registry::builtin();
-        let (quick, run) = (work.effort == Effort::Quick, |plan: &Plan<'static>| work.run(plan));
+        let quick = work.effort == Effort::Quick;
+        let run = |plan: &Plan<'static>| work.run(plan);
         let mutants = if quick { few() } else { failing() };
-        let (trials, alone) = if quick { (1, 0) } else { (TRIALS, UNDECLARED) };
-        work.begin("diagnoses", mutants.len() * trials as usize);
-        let rows = if quick {
-            // One step each: all of them are a unit.
-            let one = |mutant: &Mutant| row_of(mutant, &[trial(mutant, work.seed, false, &registry, &run)]);
-            work.unit("diagnoses", &mutants, one, |rows| rows)?
-        } else {
-            let row = |mutant: &Mutant| {
-                let seeds: Vec<u64> = (0..trials).collect();
-                let one = |k: &u64| trial(mutant, work.seed + k, *k < alone, &registry, &run);
-                work.unit(&format!("diagnoses/{}", mutant.name), &seeds, one, |t| row_of(mutant, &t))
+        let trials = if quick { 1 } else { work.trials };
+        work.begin("diagnoses", mutants.len() * trials.div_ceil(BATCH) as usize);
+        let mut rows: Vec<Diagnosed> = Vec::new();
+        // All mutants a few times, then all of them again: what was interrupted has
+        // something of each.
+        for first in (0..trials).step_by(BATCH as usize) {
+            let batch = first..(first + BATCH).min(trials);
+            let one = |mutant: &Mutant| {
+                let trial = |k: u64| {
+                    let undeclared = !quick && k < UNDECLARED;
+                    trial(mutant, work.seed + k, undeclared, &registry, &run)
+                };
+                row_of(mutant, &batch.clone().map(trial).collect::<Vec<_>>())
             };
-            mutants.iter().map(row).collect::<Result<_, _>>()?
-        };
+            let key = format!("diagnoses/{}-{}", batch.start, batch.end);
+            let more = work.unit(&key, &mutants, one, |rows| rows)?;
+            if rows.is_empty() {
+                rows = more;
+            } else {
+                rows.iter_mut().zip(more).for_each(|(row, more)| row.add(more));
+            }
+        }
         Ok(Self { trials, samples: SAMPLES, rows })
+    }
+}
+
+impl Diagnosed {
+    fn add(&mut self, more: Self) {
+        self.declared.add(more.declared);
+        self.undeclared.add(more.undeclared);
+    }
+}
+
+impl Named {
+    /// The same mutant at other parameters.
+    pub fn add(&mut self, more: Self) {
+        self.confirmed += more.confirmed;
+        self.first += more.first;
+        self.first_two += more.first_two;
+        self.confidently_wrong += more.confidently_wrong;
+        self.none += more.none;
+        for (cause, times) in more.causes {
+            *self.causes.entry(cause).or_default() += times;
+        }
+        let confident = |wrong: &Option<String>| wrong.as_ref().is_some_and(|w| w.starts_with(CONFIDENT));
+        if self.wrong.is_none() || (confident(&more.wrong) && !confident(&self.wrong)) {
+            self.wrong = more.wrong;
+        }
     }
 }
 
@@ -138,7 +180,7 @@ pub fn quick_diagnoses(seed: u64) -> Vec<Diagnosed> {
 /// The suite of a mutant with random parameters.
 fn plan(mutant: &Mutant, seed: u64, registry: &Registry) -> Plan<'static> {
     let mut stream = StreamKey::new(seed).with("mutant", mutant.name).with("stage", "parameters").block(0);
-    let mut theta: Vec<f64> = mutant.shows_at.iter().chain(&THETA).copied().collect();
+    let mut theta: Vec<f64> = mutant.shows_at.iter().chain(&[THETA]).copied().collect();
     theta.sort_by(f64::total_cmp);
     theta.dedup();
     let phi = (stream.next_f64() * 360.0 * 8.0).round() / 8.0;
@@ -189,7 +231,12 @@ fn plan(mutant: &Mutant, seed: u64, registry: &Registry) -> Plan<'static> {
     );
     let overrides = Overrides { seed: Some(seed), ..Overrides::default() };
     let expanded = load("calibration", &text, registry, &overrides);
-    expanded.unwrap_or_else(|e| panic!("{}: {e:?}\n{text}", mutant.name)).plan
+    let mut plan = expanded.unwrap_or_else(|e| panic!("{}: {e:?}\n{text}", mutant.name)).plan;
+    // The other mode says nothing of most bugs, and takes as long again.
+    if mutant.cause != Some(Cause::TransportMode) {
+        plan.cases.retain(|case| case.transport == Transport::Radiance);
+    }
+    plan
 }
 
 fn trial(
@@ -237,7 +284,7 @@ fn row_of(mutant: &Mutant, trials: &[Trial]) -> Diagnosed {
                 let confident = said.confident && first.is_some();
                 named.confidently_wrong += usize::from(confident);
                 if wrong.as_ref().is_none_or(|(before, _)| confident && !before) {
-                    let mark = if confident { "(confident) " } else { "" };
+                    let mark = if confident { format!("{CONFIDENT} ") } else { String::new() };
                     wrong = Some((confident, format!("{mark}{}", said.text)));
                 }
             }

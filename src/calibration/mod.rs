@@ -23,7 +23,7 @@ mod uniformity;
 mod work;
 
 pub use baselines::{Baselines, GridAlarms};
-pub use confusion::{Confusion, Diagnosed, Named, quick_diagnoses};
+pub use confusion::{Confusion, Diagnosed, Named, TRIALS, quick_diagnoses};
 pub use false_alarms::{Alarm, CheckAlarms, FalseAlarms, Scope};
 pub use fixed_grid::{FixedGrid, GridOutcome, NORI, PBRT, RECIPES, Spacing, sidak};
 pub use kill_matrix::{Answer, Expected, KillMatrix, Row, quick_rows};

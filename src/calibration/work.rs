@@ -58,6 +58,8 @@ pub struct Work<'w> {
     pub effort: Effort,
     /// The first seed of all random numbers.
     pub seed: u64,
+    /// Sets of random parameters at which each mutant is diagnosed.
+    pub trials: u64,
     progress: &'w Progress,
     pool: ThreadPool,
     options: Options,
@@ -80,7 +82,7 @@ impl<'w> Work<'w> {
         let name = |k| format!("gonio-{k}");
         let pool = ThreadPoolBuilder::new().num_threads(threads.unwrap_or(0)).thread_name(name).build()?;
         let options = Options { threads: Some(1), stop: progress.stop().clone(), deadline: None };
-        Ok(Self { effort, seed, progress, pool, options, observe })
+        Ok(Self { effort, seed, trials: super::confusion::TRIALS, progress, pool, options, observe })
     }
 
     /// Tells that a part begins.

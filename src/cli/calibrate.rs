@@ -7,7 +7,7 @@ use super::interrupt::stop_on_interrupt;
 use super::output::{prove_writable, tell};
 use super::progress::Steps;
 use crate::calibration::{
-    CALIBRATION, Calibration, Effort, Identity, PartId, Progress, Unfinished, Work, write,
+    CALIBRATION, Calibration, Effort, Identity, PartId, Progress, TRIALS, Unfinished, Work, write,
 };
 use crate::registry::nearest;
 use std::path::PathBuf;
@@ -28,6 +28,9 @@ pub struct CalibrateArgs {
     /// The first seed of all random numbers.
     #[arg(long, value_name = "N", default_value_t = crate::suite::SEED)]
     pub seed: u64,
+    /// Sets of random parameters at which each mutant is diagnosed.
+    #[arg(long, value_name = "N", default_value_t = TRIALS, value_parser = clap::value_parser!(u64).range(1..=1000))]
+    pub trials: u64,
     /// Threads; one for each processor if left out. Results do not depend on it.
     #[arg(long, value_name = "N", value_parser = clap::value_parser!(u16).range(1..=1024))]
     pub threads: Option<u16>,
@@ -78,8 +81,9 @@ pub fn calibrate(args: &CalibrateArgs, voice: Voice) -> Result<Exit, CliError> {
     }
     let steps = Steps::new(voice);
     let observe = |event: crate::calibration::Event| steps.observe(event);
-    let work = Work::new(effort, args.seed, args.threads.map(usize::from), &progress, &observe)
+    let mut work = Work::new(effort, args.seed, args.threads.map(usize::from), &progress, &observe)
         .map_err(|e| CliError::Internal(format!("cannot start threads: {e}")))?;
+    work.trials = args.trials;
     let parts = if args.part.is_empty() { &PartId::ALL[..] } else { &args.part };
     let measured = Calibration::measure(parts, &work);
     steps.finish();
