@@ -132,8 +132,13 @@ fn registry(pdf: f64, calls: &Arc<AtomicU64>, sleeps: Duration) -> Registry {
 
 /// Runs a suite of it, with one more line for the subject.
 fn results(registry: &Registry, line: &str) -> Results<'static> {
+    within(60, registry, line)
+}
+
+/// The same within so many seconds.
+fn within(seconds: u32, registry: &Registry, line: &str) -> Results<'static> {
     let text = format!(
-        "[suite]\nname = \"s\"\nsamples = 32768\ndetect = 1\ntheta = [30, 75]\nphi = 17\ntime_limit = 1\n\
+        "[suite]\nname = \"s\"\nsamples = 32768\ndetect = 1\ntheta = [30, 75]\nphi = 17\ntime_limit = {seconds}\n\
          [[subject]]\nuse = \"matte\"\n{line}"
     );
     let plan = load("s", &text, registry, &Overrides::default()).unwrap().plan;
@@ -173,7 +178,7 @@ fn waived_failures_have_no_diagnosis() {
 fn what_took_too_long_is_not_called_again() {
     let calls = Arc::default();
     let registry = registry(1.1, &calls, Duration::from_millis(2));
-    let results = results(&registry, "");
+    let results = within(1, &registry, "");
     assert!(results.cases.iter().any(|c| c.worst() == gonio::checks::Verdict::Error));
     let before = calls.load(Ordering::Relaxed);
     assert!(diagnosed(&registry, &results, &Options::default()).is_empty());
