@@ -1,7 +1,7 @@
 //! The result of a calibration: calibration.json, and the views made of it.
 
 use super::baselines::Baselines;
-use super::confusion::Confusion;
+use super::confusion::{Confusion, TRIALS};
 use super::false_alarms::{FalseAlarms, Scope};
 use super::kill_matrix::KillMatrix;
 use super::limits::Limits;
@@ -132,6 +132,10 @@ impl Calibration {
         let parts = self.parts();
         if parts.len() < PartId::ALL.len() {
             words.extend(parts.iter().map(|p| format!("--part {}", p.id().name())));
+        }
+        let trials = self.diagnoses.as_ref().map_or(TRIALS, |d| d.trials);
+        if self.effort == Effort::Full && trials != TRIALS {
+            words.push(format!("--trials {trials}"));
         }
         words.push(format!("--seed {}", self.seed));
         words.join(" ")
