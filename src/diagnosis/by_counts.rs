@@ -17,7 +17,7 @@ struct Case<'c> {
     wo: Direction,
     transport: Transport,
     directions: Vec<Direction>,
-    pdf: Vec<f64>,
+    pdf: &'c [f64],
 }
 
 impl Case<'_> {
@@ -43,20 +43,18 @@ pub fn by_counts(view: &View, counts: &[(usize, Counts)]) -> Vec<Claim> {
     {
         return claims;
     }
-    let case = |(k, counts): &'_ (usize, Counts)| {
-        let (wo, transport) = (view.cases[*k].wo, view.cases[*k].transport);
-        let directions = counts.directions();
-        let pdf = view.pdf(wo, &directions, transport);
-        (wo, transport, directions, pdf)
-    };
     let cases: Vec<Case> = counts
         .iter()
-        .map(|of| {
-            let (wo, transport, directions, pdf) = case(of);
-            Case { counts: &of.1, wo, transport, directions, pdf }
+        .map(|(k, counts)| Case {
+            counts,
+            wo: view.cases[*k].wo,
+            transport: view.cases[*k].transport,
+            directions: counts.directions(),
+            pdf: counts.density(),
         })
         .collect();
-    let unchanged = cases.iter().map(|c| c.test(c.pdf.clone(), 0)).fold(CountTest::default(), CountTest::and);
+    let unchanged =
+        cases.iter().map(|c| c.test(c.pdf.to_vec(), 0)).fold(CountTest::default(), CountTest::and);
     if unchanged.fits() {
         return claims;
     }
@@ -187,7 +185,7 @@ fn exchanged(view: &View, cases: &[Case]) -> Option<Claim> {
             // Elsewhere nothing is drawn: most directions of the sphere.
             if *p == 0.0 { 0.0 } else { view.pdf(*wi, &[c.wo], c.transport)[0] }
         };
-        c.test(c.directions.iter().zip(&c.pdf).map(of).collect(), 0)
+        c.test(c.directions.iter().zip(c.pdf).map(of).collect(), 0)
     };
     let found = cases.iter().map(one).fold(CountTest::default(), CountTest::and);
     found.fits().then(|| {

@@ -18,8 +18,8 @@ pub fn tell(view: &View, books: &[Textbook], claim: &mut Claim) -> Option<Profil
     if !claim.covers.contains(&"goodness-of-fit") || !view.fails_any(&counted) {
         return None;
     }
-    let counts: Vec<(usize, Counts)> =
-        pdf::counts(view).into_iter().filter(|(_, c)| c.own.len() == c.leaves.len()).collect();
+    let counts: Vec<&(usize, Counts)> =
+        pdf::counts(view).iter().filter(|(_, c)| c.own.len() == c.leaves.len()).collect();
     if counts.is_empty() {
         return None;
     }
@@ -41,7 +41,7 @@ pub fn tell(view: &View, books: &[Textbook], claim: &mut Claim) -> Option<Profil
 }
 
 /// Of as many cases with different θ as a fit takes: these counts, and then further ones.
-fn pooled(view: &View, counts: &[(usize, Counts)]) -> Option<Pooled> {
+fn pooled(view: &View, counts: &[&(usize, Counts)]) -> Option<Pooled> {
     let mut pooled = Pooled::default();
     for (k, counts) in counts {
         if !pooled.has(view.cases[*k].wo) {

@@ -200,6 +200,11 @@ impl Counts {
         self.nodes.iter().map(|n| n.0).collect()
     }
 
+    /// The subject's own density there.
+    pub fn density(&self) -> &[f64] {
+        &self.values
+    }
+
     /// Mass of each leaf under a density; NaN where the rule does not see it well: a
     /// border runs through the leaf (the density is NaN at some node, and not at all
     /// of them), or the density falls steeply, and not as the subject's own.

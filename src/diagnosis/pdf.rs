@@ -16,14 +16,14 @@ use crate::cause::Cause;
 const COUNTED: usize = 4;
 
 /// The counts of some cases, with their places in the view.
-pub fn counts(view: &View) -> Vec<(usize, Counts)> {
+pub fn counts<'v>(view: &'v View) -> &'v [(usize, Counts)] {
     let counted = |(k, seen): (usize, &Seen)| {
         let pdf = |wi: &[Direction]| view.pdf(seen.wo, wi, seen.transport);
         Some((k, Counts::of(seen.evidence, pdf)?))
     };
     let all = || view.cases.iter().enumerate().filter_map(counted).take(COUNTED).collect();
     // They take thousands of calls of pdf(), and every theme asks for them.
-    view.counted.get_or_init(all).clone()
+    view.counted.get_or_init(all)
 }
 
 /// Whether the draws follow the textbook's density.
@@ -49,7 +49,7 @@ pub fn claims(view: &View, book: Option<&Textbook>) -> Vec<Claim> {
         return Vec::new();
     }
     let counts = counts(view);
-    let Some(book) = book else { return by_counts(view, &counts) };
+    let Some(book) = book else { return by_counts(view, counts) };
     if book.agrees.by_pdf() {
         return Vec::new();
     }
@@ -57,7 +57,7 @@ pub fn claims(view: &View, book: Option<&Textbook>) -> Vec<Claim> {
     if regions.is_empty() {
         return Vec::new();
     }
-    let follows = follows(view, book, &counts);
+    let follows = follows(view, book, counts);
     let mut claims: Vec<Claim> =
         regions.iter().flat_map(|region| PDF.iter().filter_map(|m| of_region(m, region, "pdf()"))).collect();
     claims.extend(whole_functions(view, book));

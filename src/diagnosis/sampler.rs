@@ -27,7 +27,7 @@ pub fn claims(view: &View, book: Option<&Textbook>) -> Vec<Claim> {
     let Some(book) = book.filter(|b| b.agrees.by_pdf()) else { return claims };
     let drawn: u64 = counts.iter().flat_map(|(_, c)| &c.leaves).sum();
     let draws: u64 = counts.iter().map(|(_, c)| c.draws).sum();
-    if drawn * 50 < draws || follows(view, book, &counts).fits() {
+    if drawn * 50 < draws || follows(view, book, counts).fits() {
         return claims;
     }
     let scene = Scene { view, book, counts };
@@ -44,7 +44,7 @@ pub fn claims(view: &View, book: Option<&Textbook>) -> Vec<Claim> {
 struct Scene<'s> {
     view: &'s View<'s>,
     book: &'s Textbook,
-    counts: Vec<(usize, Counts)>,
+    counts: &'s [(usize, Counts)],
 }
 
 impl Scene<'_> {
@@ -52,7 +52,7 @@ impl Scene<'_> {
     /// whose own pdf is 0 counts as none.
     fn test(&self, fitted: usize, density: impl Fn(Direction, Direction) -> f64) -> CountTest {
         let mut total = CountTest::default();
-        for (k, c) in &self.counts {
+        for (k, c) in self.counts {
             let wo = self.view.cases[*k].wo;
             let told = !self.view.failed.contains("returned-pdf");
             let masses =
@@ -94,7 +94,7 @@ impl Scene<'_> {
     /// Whatever is drawn is kept until it is above the horizon.
     fn redrawn(&self) -> Option<Claim> {
         let (mut test, mut lost, mut all_kept) = (CountTest::default(), 0.0f64, true);
-        for (k, c) in &self.counts {
+        for (k, c) in self.counts {
             let seen = &self.view.cases[*k];
             let masses = c.masses(|wi| self.book.pdf(seen.wo, wi));
             let total: f64 = masses.iter().filter(|m| m.is_finite()).sum();
@@ -335,14 +335,14 @@ impl Scene<'_> {
     fn mixed_with_a_mirror_image(&self) -> Vec<Claim> {
         let book = self.book;
         let (mut own, mut mirrored) = (Vec::new(), Vec::new());
-        for (k, c) in &self.counts {
+        for (k, c) in self.counts {
             let wo = self.view.cases[*k].wo;
             own.push(c.rough_masses(|wi| book.pdf(wo, wi)));
             mirrored.push(c.rough_masses(|wi| book.pdf(wo, Direction::new(wi.x, -wi.y, wi.z))));
         }
         // Least squares for the share.
         let (mut top, mut bottom) = (0.0, 0.0);
-        for ((a, b), (_, c)) in own.iter().zip(&mirrored).zip(&self.counts) {
+        for ((a, b), (_, c)) in own.iter().zip(&mirrored).zip(self.counts) {
             let n = c.draws as f64;
             for ((a, b), count) in a.iter().zip(b).zip(&c.leaves) {
                 let (change, weight) = (b - a, 1.0 / (a + b + 1.0 / n));
@@ -355,7 +355,7 @@ impl Scene<'_> {
             return Vec::new();
         }
         let mut test = CountTest::default();
-        for ((a, b), (_, c)) in own.iter().zip(&mirrored).zip(&self.counts) {
+        for ((a, b), (_, c)) in own.iter().zip(&mirrored).zip(self.counts) {
             let masses: Vec<f64> = a.iter().zip(b).map(|(a, b)| a + share * (b - a)).collect();
             test = test.and(c.test(&masses, 1));
         }

@@ -42,12 +42,12 @@ fn beside(view: &View, book: &Textbook) -> Option<Claim> {
     let counts = counts(view);
     let (mut same, mut more, mut less) = (0, 0, 0);
     let (mut extra, mut mass, mut other_side) = (Vec::new(), 0.0f64, 0);
-    for (k, c) in &counts {
+    for (k, c) in counts {
         let seen = &view.cases[*k];
         let directions = c.directions();
-        let own = view.pdf(seen.wo, &directions, seen.transport);
         let mut off = vec![0.0; directions.len()];
-        for (j, (wi, p)) in directions.iter().zip(own).enumerate() {
+        for (j, (wi, p)) in directions.iter().zip(c.density()).enumerate() {
+            let p = *p;
             let theirs = book.pdf(seen.wo, *wi);
             if (p - theirs).abs() <= EQUAL * (p + theirs) {
                 same += usize::from(p > 0.0);
@@ -74,7 +74,7 @@ fn beside(view: &View, book: &Textbook) -> Option<Claim> {
     if same < 24 || more < 8 || less > 0 || !beside || right * 20 < all * 19 {
         return None;
     }
-    let test = follows(view, book, &counts);
+    let test = follows(view, book, counts);
     let side = if other_side == more { ", on the other side of the surface" } else { "" };
     Some(
         Claim::new(
@@ -106,7 +106,7 @@ fn phantom(view: &View) -> Vec<Claim> {
             // Chance leaves a cell empty that expects 12 with probability 6e-6.
             if c.leaves[leaf] == 0 && n * *m > 12.0 {
                 off += *m;
-                if !view.cases[k].wo.same_side(directions[9 * leaf + 4]) {
+                if !view.cases[*k].wo.same_side(directions[9 * leaf + 4]) {
                     other_side += *m;
                 }
                 *m = 0.0;

@@ -122,7 +122,7 @@ impl Textbook {
         let mut siblings = others.filter(|b| b.name == self.name && b.agrees.by_value()).peekable();
         siblings.peek()?;
         let counts = super::pdf::counts(view);
-        let follows = |book: &Self| super::pdf::follows(view, book, &counts).fits();
+        let follows = |book: &Self| super::pdf::follows(view, book, counts).fits();
         if follows(self) { None } else { siblings.find(follows) }
     }
 

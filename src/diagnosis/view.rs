@@ -29,8 +29,6 @@ pub struct Point {
     pub pdf: f64,
     /// eval(wo, wi) in sr⁻¹, cosine excluded.
     pub value: Spectrum,
-    /// eval(wi, wo), cosine excluded.
-    pub reversed: Spectrum,
     /// How it was drawn, where it was.
     pub drawn: Option<Drawn>,
 }
@@ -144,8 +142,7 @@ impl<'a> View<'a> {
         let pdf = self.pdf(wo, &wi, transport);
         let value = self.eval(wo, &wi, transport);
         for (k, (wi, drawn)) in directions.into_iter().enumerate() {
-            let reversed = self.eval(wi, &[wo], transport)[0];
-            seen.points.push(Point { wi, pdf: pdf[k], value: value[k], reversed, drawn });
+            seen.points.push(Point { wi, pdf: pdf[k], value: value[k], drawn });
         }
         seen
     }
