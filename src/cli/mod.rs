@@ -16,6 +16,7 @@ mod progress;
 mod report;
 mod run;
 mod schema;
+mod worker;
 
 pub use args::Args;
 pub use exit::Exit;

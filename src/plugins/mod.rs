@@ -1,0 +1,23 @@
+//! Subjects in any language: programs, shared libraries, WebAssembly modules.
+//! `docs/plugins.md` is the contract.
+
+mod conventions;
+mod description;
+mod instance;
+mod library;
+mod limits;
+mod open;
+mod plugin;
+mod probe;
+mod process;
+mod route;
+mod subject;
+mod wire;
+
+pub use conventions::{Conventions, Failure, Given, Up, Weight};
+pub use instance::{Call, Created, Fault, Function, Instance};
+pub use library::work;
+pub use limits::Limits;
+pub use open::Plugins;
+pub use process::{set_gonio, supervise};
+pub use route::Named;
