@@ -1,0 +1,51 @@
+"""Against the real program, where $GONIO names it."""
+
+import os
+import sys
+from pathlib import Path
+
+import numpy as np
+import pytest
+from test_assert_valid import Lambert
+
+EXAMPLES = Path(__file__).parents[3] / "examples" / "plugins"
+
+pytestmark = pytest.mark.skipif("GONIO" not in os.environ, reason="$GONIO names no program")
+
+
+def test_lambert_is_valid(gonio):
+    report = gonio.assert_valid(Lambert(0.3), theta=[30, 75])
+    assert report["summary"]["passed"] > 10
+
+
+def test_a_wrong_pdf_is_found_and_named(gonio):
+    class Wrong(Lambert):
+        def pdf(self, wo, wi):
+            return 2 * super().pdf(wo, wi)
+
+    with pytest.raises(AssertionError) as e:
+        gonio.assert_valid(Wrong(), theta=60)
+    text = str(e.value)
+    assert "gonio finds Wrong wrong" in text and "normalization" in text and "[constant-factor]" in text
+    assert sys.executable not in text
+
+
+def test_an_exception_is_shown(gonio):
+    class Broken(Lambert):
+        def eval(self, wo, wi):
+            raise ZeroDivisionError("nothing to divide by")
+
+    with pytest.raises(AssertionError, match="nothing to divide by") as e:
+        gonio.assert_valid(Broken(), theta=60)
+    assert isinstance(e.value.__cause__, ZeroDivisionError)
+
+
+def test_only_eval(gonio):
+    class Eval:
+        dimensions = 2
+
+        def eval(self, wo, wi):
+            return np.where((wo[2] > 0) & (wi[:, 2] > 0), 0.5 / np.pi, 0)
+
+    report = gonio.assert_valid(Eval(), theta=60)
+    assert report["summary"]["skipped"] > 5
