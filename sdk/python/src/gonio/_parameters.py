@@ -10,6 +10,8 @@ from typing import Any, Optional
 from ._errors import GonioError, did_you_mean
 
 _ROLES = ("roughness", "eta")
+#: The range of a number that declares none: gonio wants one.
+_ANY = 1e30
 
 
 class _Number(float):
@@ -36,15 +38,16 @@ def number(
     `role` is "roughness" (as it falls to `min`, samples gather around the mirror
     direction) or "eta" (at 1 nothing is reflected).
     """
-    low, high = -math.inf if min is None else min, math.inf if max is None else max
-    if not low <= default <= high:
-        raise GonioError(f"number({default!r}, {min!r}, {max!r}): the default lies outside of [min, max]")
+    low, high = -_ANY if min is None else min, _ANY if max is None else max
+    if not (low <= default <= high and math.isfinite(low) and math.isfinite(high)):
+        wrong = f"number({default!r}, {min!r}, {max!r})"
+        raise GonioError(f"{wrong}: the default lies outside of [min, max], or these are not finite")
     if role is not None and role not in _ROLES:
         raise GonioError(f"number(…, role={role!r}): {did_you_mean(str(role), _ROLES)}")
     made = _Number(default)
-    limits = {"min": min, "max": max, "role": role}
-    made.told = {"type": "number", "default": float(default)}
-    made.told.update({key: value for key, value in limits.items() if value is not None})
+    made.told = {"type": "number", "default": float(default), "min": float(low), "max": float(high)}
+    if role is not None:
+        made.told["role"] = role
     if doc:
         made.told["doc"] = doc
     return made
@@ -82,7 +85,7 @@ def declared(cls: type) -> list[dict[str, object]]:
         elif isinstance(p.default, (int, float)) and not isinstance(p.default, bool):
             whole = isinstance(p.default, int) and p.annotation in (int, "int")
             default = p.default if whole else float(p.default)
-            found.append({"name": p.name, "type": "number", "default": default})
+            found.append({"name": p.name, "type": "number", "default": default, "min": -_ANY, "max": _ANY})
         else:
             raise GonioError(_undeclared(cls, p))
     return found
@@ -111,9 +114,9 @@ def _value(name: str, p: Mapping[str, Any], value: Any) -> Any:
     if p["type"] == "number":
         if isinstance(value, bool) or not isinstance(value, (int, float)):
             raise GonioError(f"parameter `{name}` is {value!r} where a number is expected")
-        low, high = p.get("min", -math.inf), p.get("max", math.inf)
+        low, high = p["min"], p["max"]
         if not low <= value <= high:
-            raise GonioError(f"parameter `{name}` is {value!r}, which lies outside of [{low}, {high}]")
+            raise GonioError(f"parameter `{name}` is {value!r}, which lies outside of [{low:g}, {high:g}]")
         # An `int` is a whole number.
         if not isinstance(p["default"], int):
             return float(value)
