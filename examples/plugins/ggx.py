@@ -1,6 +1,6 @@
 """GGX with Smith's masking, as gonio's torrance-sparrow with its defaults (F = 1).
 
-    gonio check "python3 examples/plugins/ggx.py"
+    gonio check "python3 examples/plugins/ggx.py:alpha=0.1"
 
 f = D G2/(4 cos θo cos θi), with masking and shadowing correlated by height
 (E. Heitz, Understanding the masking-shadowing function, 2014); normals are drawn that wo
@@ -38,7 +38,8 @@ class GGX:
             nothing = np.zeros(len(u))
             return np.zeros((len(u), 3)), nothing, nothing, nothing
         m = self.visible_normal(wo, u)
-        om = m @ wo
+        # Not m @ wo, whose rounding depends on how many rows there are.
+        om = np.sum(m * wo, axis=-1)
         wi = 2 * om[:, None] * m - wo
         o, i = self.masked_area(wo), self.masked_area(wi)
         with np.errstate(divide="ignore", invalid="ignore"):

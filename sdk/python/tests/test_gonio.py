@@ -1,6 +1,9 @@
 """Against the real program, where $GONIO names it."""
 
+import json
 import os
+import shlex
+import subprocess
 import sys
 from pathlib import Path
 
@@ -49,3 +52,14 @@ def test_only_eval(gonio):
 
     report = gonio.assert_valid(Eval(), theta=60)
     assert report["summary"]["skipped"] > 5
+
+
+@pytest.mark.skipif(not EXAMPLES.exists(), reason="the examples are not here")
+def test_the_example_is_the_built_in_model():
+    example = shlex.join([sys.executable, str(EXAMPLES / "ggx.py")]) + ":alpha=0.1"
+    options = ["--reference", "torrance-sparrow:alpha=0.1", "--theta", "75", "--samples", "65536"]
+    command = [os.environ["GONIO"], "check", example, *options, "--format", "json"]
+    done = subprocess.run(command, capture_output=True, text=True, timeout=100)
+    assert done.returncode == 0, done.stderr
+    verdicts = {r["check"]: r["verdict"] for r in json.loads(done.stdout)["results"]}
+    assert verdicts["reference"] == "pass" and verdicts["determinism"] == "pass"
