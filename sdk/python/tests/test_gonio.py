@@ -38,7 +38,7 @@ def test_an_exception_is_shown(gonio):
         def eval(self, wo, wi):
             raise ZeroDivisionError("nothing to divide by")
 
-    with pytest.raises(AssertionError, match="nothing to divide by") as e:
+    with pytest.raises(AssertionError, match=r"error  sanity and \d+ more .*\n.* nothing to divide by") as e:
         gonio.assert_valid(Broken(), theta=60)
     assert isinstance(e.value.__cause__, ZeroDivisionError)
 
@@ -57,7 +57,7 @@ def test_only_eval(gonio):
 @pytest.mark.skipif(not EXAMPLES.exists(), reason="the examples are not here")
 def test_the_example_is_the_built_in_model():
     example = shlex.join([sys.executable, str(EXAMPLES / "ggx.py")]) + ":alpha=0.1"
-    options = ["--reference", "torrance-sparrow:alpha=0.1", "--theta", "75", "--samples", "65536"]
+    options = ["--reference", "torrance-sparrow:alpha=0.1", "--theta", "75", "--samples", "2^18"]
     command = [os.environ["GONIO"], "check", example, *options, "--format", "json"]
     done = subprocess.run(command, capture_output=True, text=True, timeout=100)
     assert done.returncode == 0, done.stderr

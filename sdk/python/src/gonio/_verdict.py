@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import json
 import math
 from collections.abc import Mapping, Sequence
 from typing import Any
@@ -17,12 +18,14 @@ def message(name: str, report: Json) -> str:
     kinds: dict[str, list[Json]] = {}
     for result in report.get("results", []):
         if result["verdict"] in ("fail", "error"):
-            kinds.setdefault(result["check"], []).append(result)
+            # What a call raises is one thing, whichever checks needed it.
+            key = result["check"] if result["verdict"] == "fail" else _first_line(result)
+            kinds.setdefault(key, []).append(result)
     lines = [f"gonio finds {name} wrong"]
     for kind in list(kinds.values())[:MOST]:
-        lines += _check(kind)
+        lines += _failure(kind)
     if len(kinds) > MOST:
-        lines.append(f"  … and {len(kinds) - MOST} more checks")
+        lines.append(f"  … and {len(kinds) - MOST} more")
     for diagnosis in report.get("diagnoses", []):
         lines += _diagnosis(diagnosis)
     return "\n".join(lines)
@@ -39,18 +42,23 @@ def skipped(report: Json) -> str:
     return "".join(f"\n  {', '.join(checks)}: {reason}" for reason, checks in reasons.items())
 
 
-def _check(kind: Sequence[Json]) -> list[str]:
-    """A check that fails in some directions: the one where it is worst."""
+def _failure(kind: Sequence[Json]) -> list[str]:
+    """What fails in some directions: the one where it is worst."""
     result = max(kind, key=lambda r: _size(r.get("effect")))
-    more = len(kind) - 1
+    checks = list(dict.fromkeys(r["check"] for r in kind))
+    check = checks[0] if len(checks) == 1 else f"{checks[0]} and {len(checks) - 1} more"
+    more = len({json.dumps(r.get("wo")) for r in kind}) - 1
     others = f"  (and {more} more direction{'s' if more > 1 else ''})" if more else ""
     wo = result.get("wo")
     where = f"  θo {wo['theta_deg']:g}° φo {wo['phi_deg']:g}°" if wo else ""
-    text = str(result["message"]).strip().partition("\n")[0]
-    lines = [f"  {result['verdict']:5}  {result['check']}{where}{others}", f"         {text}"]
+    lines = [f"  {result['verdict']:5}  {check}{where}{others}", f"         {_first_line(result)}"]
     if result.get("worst"):
         lines.append(f"         {_worst(result['worst'])}")
     return lines
+
+
+def _first_line(result: Json) -> str:
+    return str(result["message"]).strip().partition("\n")[0]
 
 
 def _size(effect: Any) -> float:
