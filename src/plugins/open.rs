@@ -34,9 +34,12 @@ impl Plugins {
     /// no plugin. A plugin that cannot be opened has a model too, whose subjects say
     /// why: it must not keep others from being measured.
     pub fn model(&self, name: &str) -> Option<Result<Model, String>> {
-        let (file, wanted) = match Named::of(name) {
-            Some(_) => (name, None),
-            None => name.rsplit_once('#').map(|(file, model)| (file, Some(model)))?,
+        let (file, wanted) = match name.rsplit_once('#') {
+            // A word of a command may begin with #.
+            Some((file, model)) if !file.ends_with(char::is_whitespace) && Named::of(file).is_some() => {
+                (file, Some(model))
+            }
+            _ => (name, None),
         };
         let named = Named::of(file)?;
         let opened = {

@@ -110,6 +110,11 @@ impl Plugin {
         self.pool.lock().unwrap_or_else(PoisonError::into_inner)
     }
 
+    /// Ends of instances under a subject count no more.
+    pub fn forgive(&self, subject: u64) {
+        self.pool().ends.remove(&subject);
+    }
+
     /// Lets idle instances forget a subject.
     pub fn forget(&self, subject: u64) {
         let mut pool = self.pool();

@@ -32,6 +32,9 @@ pub fn conventions(subject: &Foreign, declared: Conventions) -> (Conventions, Ve
     }
     let mut found = declared;
     let mut told = Vec::new();
+    if draw(subject).is_none() {
+        return (declared, told);
+    }
     if let Some(other) = frame(subject, declared) {
         if other.up != declared.up {
             let axis = |up| if up == Up::Z { "z" } else { "y" };
@@ -47,7 +50,7 @@ pub fn conventions(subject: &Foreign, declared: Conventions) -> (Conventions, Ve
         }
         found = other;
     }
-    let draws: Vec<Draw> = draw(&subject.under(found));
+    let Some(draws) = draw(&subject.under(found)) else { return (found, told) };
     if found.failure == Failure::Flags && draws.iter().any(Draw::is_void) && draws.iter().any(Draw::is_good) {
         told.push(
             "some samples have weight 0 and pdf 0, and flags of a sample: declare `failure` = \"zero-pdf\", or \
@@ -104,7 +107,8 @@ fn random_numbers(k: usize, dimensions: usize) -> Vec<f64> {
     u
 }
 
-fn draw(subject: &dyn Subject) -> Vec<Draw> {
+/// `None` where it does not answer.
+fn draw(subject: &dyn Subject) -> Option<Vec<Draw>> {
     let description = subject.describe();
     let channels = description.channels.len();
     let mut draws = Vec::new();
@@ -113,14 +117,14 @@ fn draw(subject: &dyn Subject) -> Vec<Draw> {
         samples.clear(channels);
         let u = random_numbers(k, description.dimensions);
         if subject.sample(wo, &u, Transport::Radiance, &mut samples).is_err() {
-            continue;
+            return None;
         }
         let n = samples.len();
         let (mut eval, mut pdf) = (vec![0.0; n * channels], vec![0.0; n]);
         if subject.eval(wo, &samples.wi, Transport::Radiance, &mut eval).is_err()
             || subject.pdf(wo, &samples.wi, Transport::Radiance, &mut pdf).is_err()
         {
-            continue;
+            return None;
         }
         draws.extend((0..n).map(|j| Draw {
             wo,
@@ -133,7 +137,7 @@ fn draw(subject: &dyn Subject) -> Vec<Draw> {
             pdf: pdf[j],
         }));
     }
-    draws
+    Some(draws)
 }
 
 /// Other axes and senses, where samples come under them as they should, and under
@@ -146,7 +150,7 @@ fn frame(subject: &Foreign, declared: Conventions) -> Option<Conventions> {
     }
     // Share of draws that are samples on the side of wo.
     let right = |conventions: Conventions| -> f64 {
-        let draws = draw(&subject.under(conventions));
+        let draws = draw(&subject.under(conventions)).unwrap_or_default();
         let good = draws.iter().filter(|d| d.continuous && d.wi.z > 0.0 && d.returned_pdf > 0.0).count();
         good as f64 / draws.len().max(1) as f64
     };

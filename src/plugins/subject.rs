@@ -70,6 +70,8 @@ impl Foreign {
         })?;
         let mut subject = Self { made, description, conventions: declared };
         let (found, contradictions) = probe::conventions(&subject, declared);
+        // What ended under the probe is met again by the measurement, which tells it.
+        plugin.forgive(subject.made.number);
         subject.conventions = found;
         subject.description.contradictions = contradictions;
         Ok(subject)

@@ -16,8 +16,8 @@ use std::time::{Duration, Instant};
 /// A pipe holds a batch then; the default is 64 KiB.
 const PIPE: usize = 1 << 20;
 
-/// How long an ended program may take to be gone.
-const LAST: Duration = Duration::from_secs(3);
+/// How long an ended program may take to be gone: its supervisor ends what it left.
+const LAST: Duration = Duration::from_secs(1);
 
 /// The process of a plugin.
 pub struct Child {
