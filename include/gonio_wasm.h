@@ -22,15 +22,27 @@
 extern "C" {
 #endif
 
+#define GONIO_WEAK __attribute__((weak))
 #define GONIO_IMPORT(name) __attribute__((import_module("env"), import_name(#name)))
-#define GONIO_MATH(name) \
-    GONIO_IMPORT(name) double name(double); \
-    GONIO_IMPORT(name##f) float name##f(float);
-#define GONIO_MATH_2(name) \
-    GONIO_IMPORT(name) double name(double, double); \
-    GONIO_IMPORT(name##f) float name##f(float, float);
 
-/* clang makes instructions of those that wasm has: sqrt, fabs, floor, ... */
+/* Definitions that call an import, since clang forgets what a declaration says of
+ * functions that it knows. The linker leaves out those that nobody calls. */
+#define GONIO_MATH(name) \
+    GONIO_IMPORT(name) double gonio_import_##name(double); \
+    GONIO_IMPORT(name##f) float gonio_import_##name##f(float); \
+    GONIO_WEAK double name(double x) { return gonio_import_##name(x); } \
+    GONIO_WEAK float name##f(float x) { return gonio_import_##name##f(x); }
+#define GONIO_MATH_2(name) \
+    GONIO_IMPORT(name) double gonio_import_##name(double, double); \
+    GONIO_IMPORT(name##f) float gonio_import_##name##f(float, float); \
+    GONIO_WEAK double name(double x, double y) { return gonio_import_##name(x, y); } \
+    GONIO_WEAK float name##f(float x, float y) { return gonio_import_##name##f(x, y); }
+
+/* Those that are instructions of wasm. */
+#define GONIO_INSTRUCTION(name) \
+    GONIO_WEAK double name(double x) { return __builtin_##name(x); } \
+    GONIO_WEAK float name##f(float x) { return __builtin_##name##f(x); }
+
 GONIO_MATH(sin)
 GONIO_MATH(cos)
 GONIO_MATH(tan)
@@ -50,26 +62,27 @@ GONIO_MATH(log)
 GONIO_MATH(log2)
 GONIO_MATH(log10)
 GONIO_MATH(log1p)
-GONIO_MATH(sqrt)
 GONIO_MATH(cbrt)
 GONIO_MATH(erf)
 GONIO_MATH(erfc)
 GONIO_MATH(lgamma)
 GONIO_MATH(tgamma)
-GONIO_MATH(fabs)
-GONIO_MATH(floor)
-GONIO_MATH(ceil)
 GONIO_MATH(round)
-GONIO_MATH(trunc)
 GONIO_MATH_2(pow)
 GONIO_MATH_2(atan2)
 GONIO_MATH_2(hypot)
 GONIO_MATH_2(fmod)
 GONIO_MATH_2(fmin)
 GONIO_MATH_2(fmax)
-GONIO_MATH_2(copysign)
-
-#define GONIO_WEAK __attribute__((weak))
+GONIO_INSTRUCTION(sqrt)
+GONIO_INSTRUCTION(fabs)
+GONIO_INSTRUCTION(floor)
+GONIO_INSTRUCTION(ceil)
+GONIO_INSTRUCTION(trunc)
+GONIO_INSTRUCTION(rint)
+GONIO_INSTRUCTION(nearbyint)
+GONIO_WEAK double copysign(double x, double y) { return __builtin_copysign(x, y); }
+GONIO_WEAK float copysignf(float x, float y) { return __builtin_copysignf(x, y); }
 
 /* clang writes calls of these three for copies and zeros. */
 GONIO_WEAK void *memcpy(void *to, const void *from, size_t size)
