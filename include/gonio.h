@@ -86,7 +86,8 @@ enum {
 extern "C" {
 #endif
 
-/* With NULL, the description of all models of the plugin (JSON, never NULL).
+/* With NULL, the description of all models of the plugin (JSON; NULL if that
+ * failed, and gonio_error() says why).
  * With a handle, what is special about that subject: any of "channels",
  * "dimensions", "precision", "has", "claims", "conventions", in place of what
  * its model says; or NULL. */
