@@ -4,7 +4,7 @@ use super::args::{Args, Command};
 use super::error::CliError;
 use super::exit::Exit;
 use super::output::tell;
-use super::{calibrate, completions, explain, figures, list, report, run, schema};
+use super::{calibrate, completions, explain, figures, list, new, report, run, schema};
 use crate::registry::Registry;
 use clap::Parser;
 use std::panic::{AssertUnwindSafe, catch_unwind};
@@ -47,6 +47,7 @@ fn obey(args: Args, registry: &Registry) -> Result<Exit, CliError> {
         Command::Explain(args) => explain::explain(&args),
         Command::Report(args) => report::report(&args, voice),
         Command::Figures(args) => figures::figures(&args, voice),
+        Command::New(args) => new::new(&args, voice),
         Command::Calibrate(args) => calibrate::calibrate(&args, voice),
         Command::Schema(args) => schema::schema(&args),
         Command::Completions(args) => completions::completions(&args),

@@ -1,6 +1,7 @@
-/* Calls a plugin that it is linked with: MODEL PARAMETERS DIMENSIONS, one channel.
- * Reads wo[3], n and u[n][dimensions]. Writes the description, what is special
- * about the handle, and a line a row: flags wi[3] weight pdf f(wi) pdf(wi). */
+/* Calls a plugin that it is linked with: MODEL PARAMETERS DIMENSIONS CHANNELS.
+ * Writes the description and what is special about the handle. Of 0 dimensions:
+ * f(z), in both modes. Else reads wo[3], n and u[n][dimensions] and writes a line a
+ * row, of one channel: flags wi[3] weight pdf f(wi) pdf(wi). */
 
 #include "gonio.h"
 
@@ -25,14 +26,17 @@ static int refused(void)
 
 int main(int count, char **arguments)
 {
-    double wo[3], *u, *wi, *weight, *pdf, *flags, *f, *p;
-    size_t n, k, dimensions;
+    static const double z[3] = {0.0, 0.0, 1.0};
+    double wo[3], value[16], *u, *wi, *weight, *pdf, *flags, *f, *p;
+    size_t n, k, dimensions, channels;
+    int mode;
     const char *special;
     void *handle;
-    if (count != 4) {
+    if (count != 5) {
         return 2;
     }
     dimensions = (size_t)atoi(arguments[3]);
+    channels = (size_t)atoi(arguments[4]);
     printf("%s\n", gonio_describe(NULL));
     handle = gonio_create(arguments[1], arguments[2]);
     if (handle == NULL) {
@@ -40,7 +44,15 @@ int main(int count, char **arguments)
     }
     special = gonio_describe(handle);
     printf("%s\n", special == NULL ? "{}" : special);
-    while (scanf("%lf %lf %lf %zu", wo, wo + 1, wo + 2, &n) == 4) {
+    for (mode = GONIO_RADIANCE; dimensions == 0 && mode <= GONIO_IMPORTANCE; ++mode) {
+        if (gonio_eval(handle, mode, z, 1, z, value) != 0) {
+            return refused();
+        }
+        for (k = 0; k < channels; ++k) {
+            printf("%.17g%c", value[k], k + 1 == channels ? '\n' : ' ');
+        }
+    }
+    while (dimensions > 0 && scanf("%lf %lf %lf %zu", wo, wo + 1, wo + 2, &n) == 4) {
         u = numbers(n * dimensions);
         wi = numbers(3 * n);
         weight = numbers(n);
