@@ -287,7 +287,7 @@ fn the_examples_pass_as_their_readme_says() {
         std::os::unix::fs::symlink(root().join(part), desk.path().join(part)).unwrap();
     }
     std::fs::create_dir(desk.path().join("target")).unwrap();
-    follow(desk.path(), &root().join("examples/plugins/README.md"), Into::into);
+    follow(desk.path(), &root().join("examples/plugins/README.md"), str::to_string);
 }
 
 #[test]

@@ -117,9 +117,9 @@ fn next_steps(folder: &Path, readme: &str, name: &str) -> String {
 
 /// `Err` where there is anything: what somebody wrote is not written over.
 fn must_be_free(folder: &Path) -> Result<(), CliError> {
-    let why = match std::fs::read_dir(folder) {
-        Ok(mut entries) if entries.next().is_none() => return Ok(()),
-        Ok(_) => "is there already, and is not empty",
+    let why = match std::fs::read_dir(folder).map(|mut entries| entries.next().is_some()) {
+        Ok(false) => return Ok(()),
+        Ok(true) => "is there already, and is not empty",
         Err(e) if e.kind() == ErrorKind::NotFound => return Ok(()),
         Err(e) if e.kind() == ErrorKind::NotADirectory => "is a file",
         Err(why) => return Err(CliError::Output { path: folder.into(), why }),
