@@ -1,6 +1,6 @@
 //! What may be typed.
 
-use super::{calibrate, check, completions, explain, figures, list, report, run, schema, worker};
+use super::{calibrate, check, completions, explain, figures, list, new, report, run, schema, worker};
 use crate::checks;
 use crate::registry::nearest;
 use crate::report::Which;
@@ -40,6 +40,8 @@ pub enum Command {
     Report(report::ReportArgs),
     /// Draw the figures of a lecture on reflection, from the built-in models.
     Figures(figures::FiguresArgs),
+    /// Write a plugin to start from, in a language of your choice.
+    New(new::NewArgs),
     /// Measure how far gonio's own verdicts can be trusted.
     Calibrate(calibrate::CalibrateArgs),
     /// Print the JSON Schema of report.json.
@@ -247,6 +249,8 @@ mod tests {
             ("gonio check lambert --share 2", "between 0 and 1"),
             ("gonio calibrate --part false-alarm", "did you mean `false-alarms`?"),
             ("gonio rum", "run"),
+            ("gonio new java paint", "rust, c, cpp, python, wasm-c"),
+            ("gonio new c Paint", "small letters"),
         ] {
             let text = usage_error(line);
             assert!(text.contains(part), "{line}: {text}");

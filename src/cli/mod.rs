@@ -11,6 +11,7 @@ mod figures;
 mod interrupt;
 mod list;
 mod main;
+mod new;
 mod output;
 mod progress;
 mod report;
