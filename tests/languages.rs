@@ -55,7 +55,12 @@ impl Languages {
     fn all(&self, alpha: f64) -> Vec<(&'static str, String)> {
         let path = |path: &Path| format!("{}:alpha={alpha}", path.display());
         vec![
-            ("Rust", format!("torrance-sparrow:distribution=ggx,sampling=visible-normals,fresnel=none,alpha={alpha}")),
+            (
+                "Rust",
+                format!(
+                    "torrance-sparrow:distribution=ggx,sampling=visible-normals,fresnel=none,alpha={alpha}"
+                ),
+            ),
             ("C", path(&self.c)),
             ("C++", path(&self.cpp)),
             ("WebAssembly", path(&self.wasm)),
@@ -122,9 +127,8 @@ fn equal_inputs_give_equal_numbers() {
 #[test]
 fn a_suite_gives_the_same_verdicts() {
     let folder = tempfile::tempdir().unwrap();
-    let mut text = String::from(
-        "[suite]\nname = \"languages\"\ntheta = [0, 60, 85]\nphi = 17\nsamples = \"2^17\"\n",
-    );
+    let mut text =
+        String::from("[suite]\nname = \"languages\"\ntheta = [0, 60, 85]\nphi = 17\nsamples = \"2^17\"\n");
     for alpha in [0.05, 0.5] {
         for (language, spelling) in languages().all(alpha) {
             let (name, _) = spelling.rsplit_once(":").unwrap();

@@ -3,7 +3,7 @@
 use std::time::Duration;
 
 /// What a plugin may take, and where it runs.
-#[derive(Clone, Debug, PartialEq, Eq, Hash)]
+#[derive(Clone, Copy, Debug, PartialEq, Eq, Hash)]
 pub struct Limits {
     /// What one call may take. A batch of 4096 directions takes a scalar function
     /// in Python a tenth of a second.
@@ -19,6 +19,13 @@ pub struct Limits {
 impl Default for Limits {
     fn default() -> Self {
         Self { call: Duration::from_secs(10), memory: 4096 << 20, in_process: false }
+    }
+}
+
+impl Limits {
+    /// `memory` as it is given: in MiB.
+    pub fn mebibytes(&self) -> u64 {
+        self.memory >> 20
     }
 }
 

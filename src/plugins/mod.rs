@@ -12,6 +12,7 @@ mod probe;
 mod process;
 mod route;
 mod subject;
+mod wasm;
 mod wire;
 
 pub use conventions::{Conventions, Failure, Given, Up, Weight};

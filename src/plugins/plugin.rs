@@ -54,7 +54,7 @@ impl Plugin {
             name: name.into(),
             hello,
             route,
-            limits: limits.clone(),
+            limits: *limits,
             pool: Mutex::new(Pool { idle, ..Pool::default() }),
             free: Condvar::new(),
             alone: alone.then(Mutex::default),

@@ -4,6 +4,7 @@ use super::instance::{Fault, Instance};
 use super::library::Loaded;
 use super::limits::Limits;
 use super::process::{Child, Launch};
+use super::wasm::Module;
 use std::ffi::OsString;
 use std::path::{Path, PathBuf};
 
@@ -14,6 +15,8 @@ pub enum Route {
     Process(Launch),
     /// A library in this process.
     InProcess(Loaded),
+    /// A WebAssembly module, in its sandbox.
+    Wasm(Module),
 }
 
 /// What a text names.
@@ -62,7 +65,7 @@ impl Named {
             Self::Library(path) if limits.in_process => Route::InProcess(Loaded::open(path)?),
             Self::Library(path) => Route::Process(Launch::Library(path.clone())),
             Self::Wasm(path) => {
-                return Err(Fault::Ended(format!("`{}`: WebAssembly is not supported yet", path.display())));
+                Route::Wasm(Module::open(path, limits).map_err(|e| Fault::Ended(e.to_string()))?)
             }
         })
     }
@@ -80,6 +83,7 @@ impl Route {
         Ok(match self {
             Self::Process(launch) => Box::new(Child::start(launch, limits)?),
             Self::InProcess(loaded) => Box::new(loaded.clone()),
+            Self::Wasm(module) => module.start()?,
         })
     }
 }

@@ -81,7 +81,7 @@ impl Registry {
     /// With these limits for plugins; those that were opened are opened anew.
     pub fn limited(&self, limits: &Limits) -> Self {
         let same = self.plugins.limits() == limits;
-        let plugins = if same { self.plugins.clone() } else { Arc::new(Plugins::new(limits.clone())) };
+        let plugins = if same { self.plugins.clone() } else { Arc::new(Plugins::new(*limits)) };
         Self { plugins, ..self.clone() }
     }
 

@@ -40,7 +40,7 @@ pub fn reproduce(program: &str, plan: &Plan, case: &Case, share: f64, check: &st
         option("call-limit", limits.call.as_secs_f64().to_string());
     }
     if limits.memory != usual.memory {
-        option("memory", (limits.memory >> 20).to_string());
+        option("memory", limits.mebibytes().to_string());
     }
     if let Some(reference) = &case.reference {
         option("reference", reference.clone());

@@ -51,7 +51,7 @@ impl Child {
             said: LastWords::default(),
             wire: Wire::Frames,
             hello: String::new(),
-            limits: limits.clone(),
+            limits: *limits,
         };
         let mut wire = None;
         child.hello = child.exchange(&[], "its description", START, |read| {
@@ -187,7 +187,7 @@ impl Child {
             Some(status) => manner(status),
             None => "closed its standard output and went on running".into(),
         };
-        let memory = self.limits.memory >> 20;
+        let memory = self.limits.mebibytes();
         let memory = match status.and_then(|s| s.signal()) {
             Some(_) => format!(" (its memory is limited to {memory} MiB: --memory)"),
             None => String::new(),
