@@ -3,71 +3,15 @@
 
 mod common;
 
-use common::tools::tools;
+use common::languages::languages;
 use gonio::bsdf::{Direction, Samples, Subject, Transport};
-use gonio::plugins::set_gonio;
 use gonio::registry::Registry;
-use std::path::{Path, PathBuf};
 use std::process::Command;
-use std::sync::{Arc, OnceLock};
+use std::sync::Arc;
 
 /// Relative: a dozen operations and two transcendental functions, at a lobe whose
 /// exponent multiplies rounding by 1/α² (at most 400 here).
 const PRECISION: f64 = 1e-11;
-
-/// How each language is named on the command line, without its parameters.
-struct Languages {
-    c: PathBuf,
-    cpp: PathBuf,
-    wasm: PathBuf,
-    python: String,
-}
-
-fn build(command: &mut Command) {
-    let done = command.current_dir(env!("CARGO_MANIFEST_DIR")).output().expect("a compiler");
-    assert!(done.status.success(), "{command:?}: {}", String::from_utf8_lossy(&done.stderr));
-}
-
-fn languages() -> &'static Languages {
-    static BUILT: OnceLock<Languages> = OnceLock::new();
-    BUILT.get_or_init(|| {
-        let tools = tools();
-        let folder = Path::new(env!("CARGO_TARGET_TMPDIR")).join("languages");
-        std::fs::create_dir_all(&folder).unwrap();
-        let [c, cpp, wasm] = ["ggx-c.so", "ggx-cpp.so", "ggx.wasm"].map(|name| folder.join(name));
-        let shared = ["-O2", "-shared", "-fPIC", "-Iinclude", "-Isdk/cpp"];
-        build(Command::new("cc").args(shared).args(["examples/plugins/ggx.c", "-lm", "-o"]).arg(&c));
-        build(Command::new("c++").args(shared).args(["examples/plugins/ggx.cpp", "-o"]).arg(&cpp));
-        build(
-            Command::new("clang")
-                .args(["--target=wasm32", "-nostdlib", "-O2", "-Wl,--no-entry", "-Iinclude"])
-                .args(["examples/plugins/ggx.c", "-o"])
-                .arg(&wasm),
-        );
-        let script = Path::new(env!("CARGO_MANIFEST_DIR")).join("examples/plugins/ggx.py");
-        let python = format!("{} {}", tools.python.join("python").display(), script.display());
-        set_gonio(env!("CARGO_BIN_EXE_gonio").into());
-        Languages { c, cpp, wasm, python }
-    })
-}
-
-impl Languages {
-    fn all(&self, alpha: f64) -> Vec<(&'static str, String)> {
-        let path = |path: &Path| format!("{}:alpha={alpha}", path.display());
-        vec![
-            (
-                "Rust",
-                format!(
-                    "torrance-sparrow:distribution=ggx,sampling=visible-normals,fresnel=none,alpha={alpha}"
-                ),
-            ),
-            ("C", path(&self.c)),
-            ("C++", path(&self.cpp)),
-            ("WebAssembly", path(&self.wasm)),
-            ("Python", format!("{}:alpha={alpha}", self.python)),
-        ]
-    }
-}
 
 fn subject(spelling: &str) -> Arc<dyn Subject> {
     Registry::builtin().resolve(&spelling.parse().unwrap()).unwrap_or_else(|e| panic!("{e}")).subject

@@ -4,6 +4,7 @@
 pub mod glass;
 pub mod measuring;
 pub mod plastic;
+pub mod languages;
 pub mod tools;
 
 use gonio::bsdf::{Bsdf, Description, Direction, Lobe, RandomNumbers, Sample, Spectrum, Transport};
