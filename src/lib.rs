@@ -21,6 +21,7 @@ mod measure;
 pub mod measured;
 pub mod models;
 pub mod mutants;
+pub mod plugins;
 pub mod registry;
 pub mod report;
 pub mod sphere;

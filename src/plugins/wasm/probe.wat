@@ -1,0 +1,25 @@
+;; What plugins are made of, a hundred times. probe.wasm is this, translated.
+(module
+  (import "gonio" "here" (func $here))
+  (memory 1)
+  (table 1 funcref)
+  (elem (i32.const 0) func $root)
+  (global $sum (mut f64) (f64.const 0))
+  (func $root (param f64) (result f64)
+    (f64.sqrt (f64.abs (f64.floor (local.get 0)))))
+  (func (export "rounds") (local $i i32) (local $x f64)
+    (loop $round
+      (call $here)
+      (local.set $x (f64.mul (f64.add (local.get $x) (f64.const 1.5)) (f64.convert_i32_u (local.get $i))))
+      (f64.store offset=8 (i32.const 64) (call $root (f64.load offset=8 (i32.const 64))))
+      (local.set $x (call_indirect (param f64) (result f64) (local.get $x) (i32.const 0)))
+      (global.set $sum (f64.add (global.get $sum) (select (local.get $x) (f64.const 1) (local.get $i))))
+      (memory.fill (i32.const 128) (i32.const 1) (i32.const 64))
+      (memory.copy (i32.const 256) (i32.const 128) (i32.const 64))
+      (i32.store8 (i32.const 300) (i32.trunc_sat_f64_s (f64.neg (f64.div (local.get $x) (f64.const 3)))))
+      (i64.store (i32.const 320)
+        (i64.rem_u (i64.shr_u (i64.load (i32.const 256)) (i64.const 3)) (i64.const 1000)))
+      (block $a (block $b (br_table $a $b (i32.and (local.get $i) (i32.const 1)))))
+      (if (f64.lt (local.get $x) (f64.const 2)) (then (local.set $x (f64.const 0.5))))
+      (br_if $round
+        (i32.lt_u (local.tee $i (i32.add (local.get $i) (i32.const 1))) (i32.const 100))))))
