@@ -4,11 +4,11 @@
 mod common;
 
 use common::measuring::{self, measure};
-use gonio::bsdf::{Bsdf, Description, Direction, Lobe, Sample, Spectrum, Subject, Transport};
+use gonio::bsdf::{Bsdf, ClaimsPatch, Description, Direction, Lobe, Sample, Spectrum, Subject, Transport};
 use gonio::checks::Verdict;
 use gonio::engine::CaseResult;
 use gonio::registry::Registry;
-use gonio::suite::{Case, ClaimsPatch};
+use gonio::suite::Case;
 use std::collections::BTreeSet;
 use std::f64::consts::{PI, TAU};
 use std::sync::Arc;

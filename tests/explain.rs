@@ -2,9 +2,9 @@
 //! pages refer to.
 
 use assert_cmd::Command;
+use gonio::bsdf::ClaimsPatch;
 use gonio::cause::Cause;
 use gonio::registry::Registry;
-use gonio::suite::ClaimsPatch;
 use gonio::{checks, mutants};
 use std::collections::BTreeSet;
 use std::path::PathBuf;

@@ -2,12 +2,12 @@
 //! measured by every check. `tests/data/lbnl/make.py` makes the files and
 //! `reference.json` with pyradiance; `compare.py` there compares with checkBSDF.
 
-use gonio::bsdf::{Direction, Subject, Transport};
+use gonio::bsdf::{ClaimsPatch, Direction, Subject, Transport};
 use gonio::checks::Verdict;
 use gonio::engine::{CaseResult, Options, run};
 use gonio::evidence::Company;
 use gonio::measured::lbnl::{Measured, Side, Table, read};
-use gonio::suite::{Case, ClaimsPatch, Plan, Settings};
+use gonio::suite::{Case, Plan, Settings};
 use serde_json::Value;
 use std::sync::Arc;
 use std::time::Duration;

@@ -117,6 +117,9 @@ pub struct Description {
     /// reason given here.
     #[serde(default, skip_serializing_if = "Vec::is_empty")]
     pub by_construction: Vec<ByConstruction>,
+    /// What a probe found to contradict the conventions that it declares.
+    #[serde(default, skip_serializing_if = "Vec::is_empty")]
+    pub contradictions: Vec<String>,
     /// Its table, if its values come from one.
     #[serde(default, skip_serializing_if = "Option::is_none")]
     pub table: Option<Table>,
@@ -135,6 +138,7 @@ impl Description {
             has: Has::default(),
             claims: Claims::default(),
             by_construction: Vec::new(),
+            contradictions: Vec::new(),
             table: None,
         }
     }

@@ -6,6 +6,7 @@
 
 mod cells;
 mod claims;
+mod claims_patch;
 mod description;
 mod direction;
 mod fresnel;
@@ -16,6 +17,7 @@ mod subject;
 
 pub use cells::{NativeCells, Projection, Rectangle};
 pub use claims::{Claims, Cosine, OffSupport, RandomNumbers, Transport, TransportModes};
+pub use claims_patch::ClaimsPatch;
 pub use description::{ByConstruction, Description, Has, Precision, SubjectKind, Table};
 pub use direction::Direction;
 pub use fresnel::{FresnelFunction, Interface};

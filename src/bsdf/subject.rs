@@ -5,6 +5,7 @@ use super::{
     Description, Direction, FresnelFunction, NativeCells, NormalDistribution, Sample, Samples, Spectrum,
     Transport,
 };
+use std::sync::Mutex;
 
 /// What a material author implements. One direction at a time, easy to write.
 ///
@@ -68,6 +69,10 @@ pub trait Subject: Send + Sync {
     }
     /// As [`Bsdf::cells`].
     fn cells(&self, _wo: Direction) -> Option<NativeCells> {
+        None
+    }
+    /// Held for the length of a case, where no two may be measured at once.
+    fn alone(&self) -> Option<&Mutex<()>> {
         None
     }
     /// The distribution of normals that this is, where its description says so.

@@ -43,6 +43,11 @@ impl Check for Sanity {
         broken.sort_by_key(|(_, tally)| std::cmp::Reverse(tally.broken));
         let Some((_, first)) = broken.first() else {
             let message = format!("{} values are finite and in range", sanity.checked);
+            let contradictions = &evidence.description.contradictions;
+            if !contradictions.is_empty() {
+                let told = format!("{}; it was measured as such", contradictions.join("; "));
+                return Outcome::new(Verdict::Warn, told).into();
+            }
             return Outcome::new(Verdict::Pass, message).into();
         };
         let sentences: Vec<_> =

@@ -1,12 +1,13 @@
 //! What may be typed.
 
-use super::{calibrate, check, completions, explain, figures, list, report, run, schema};
+use super::{calibrate, check, completions, explain, figures, list, new, report, run, schema, worker};
 use crate::checks;
 use crate::registry::nearest;
 use crate::report::Which;
-use crate::suite::{Overrides, azimuth, count, polar};
+use crate::suite::{Overrides, azimuth, count, mebibytes, polar, time_limit};
 use clap::{Parser, Subcommand, ValueEnum};
 use std::path::PathBuf;
+use std::time::Duration;
 
 /// A goniophotometer for material code: measures whether a BSDF's eval, sample
 /// and pdf agree.
@@ -39,12 +40,17 @@ pub enum Command {
     Report(report::ReportArgs),
     /// Draw the figures of a lecture on reflection, from the built-in models.
     Figures(figures::FiguresArgs),
+    /// Write a plugin to start from, in a language of your choice.
+    New(new::NewArgs),
     /// Measure how far gonio's own verdicts can be trusted.
     Calibrate(calibrate::CalibrateArgs),
     /// Print the JSON Schema of report.json.
     Schema(schema::SchemaArgs),
     /// Print completions for a shell.
     Completions(completions::CompletionsArgs),
+    /// The processes that plugins run in; gonio starts them itself.
+    #[command(hide = true)]
+    Worker(worker::WorkerArgs),
 }
 
 /// How gonio talks to people.
@@ -131,6 +137,15 @@ pub struct Measuring {
     /// Azimuth of wo in degrees (may be repeated).
     #[arg(long, value_name = "DEG", value_parser = phi, allow_negative_numbers = true)]
     pub phi: Vec<f64>,
+    /// What one call of a plugin may take.
+    #[arg(long, value_name = "SECONDS", value_parser = seconds, help_heading = "Plugins")]
+    pub call_limit: Option<f64>,
+    /// What a plugin may take of memory.
+    #[arg(long, value_name = "MIB", value_parser = memory, help_heading = "Plugins")]
+    pub memory: Option<f64>,
+    /// Load shared libraries into gonio itself: faster, and a crash is a crash of gonio.
+    #[arg(long, help_heading = "Plugins")]
+    pub in_process: bool,
     /// What comes out.
     #[arg(long, value_enum, default_value_t)]
     pub format: Format,
@@ -151,6 +166,9 @@ impl Measuring {
             theta: distinct(&self.theta),
             phi: distinct(&self.phi),
             checks: distinct(&self.check),
+            call_limit: self.call_limit.map(Duration::from_secs_f64),
+            memory: self.memory.map(|mib| (mib as u64) << 20),
+            in_process: self.in_process,
         }
     }
 }
@@ -184,6 +202,15 @@ pub(super) fn unknown<'a>(what: &str, name: &str, known: impl Iterator<Item = &'
 /// A number that `range` accepts.
 pub(super) fn number(text: &str, range: fn(f64) -> Result<f64, String>) -> Result<f64, String> {
     range(text.parse().map_err(|_| "this is not a number".to_string())?)
+}
+
+/// What a time limit is.
+pub(super) fn seconds(text: &str) -> Result<f64, String> {
+    number(text, time_limit)
+}
+
+fn memory(text: &str) -> Result<f64, String> {
+    number(text, mebibytes)
 }
 
 fn theta(text: &str) -> Result<f64, String> {
@@ -222,6 +249,8 @@ mod tests {
             ("gonio check lambert --share 2", "between 0 and 1"),
             ("gonio calibrate --part false-alarm", "did you mean `false-alarms`?"),
             ("gonio rum", "run"),
+            ("gonio new java paint", "rust, c, cpp, python, wasm-c"),
+            ("gonio new c Paint", "small letters"),
         ] {
             let text = usage_error(line);
             assert!(text.contains(part), "{line}: {text}");

@@ -1,14 +1,11 @@
 //! `gonio check`.
 
-use super::args::{Measuring, number};
+use super::args::{Measuring, number, seconds};
 use super::error::CliError;
 use super::run::Request;
-use crate::bsdf::Transport;
+use crate::bsdf::{ClaimsPatch, Transport};
 use crate::registry::{Registry, Spelling};
-use crate::suite::{
-    ClaimsPatch, Entry, Mistake, PHI, Plan, SuiteError, SuiteFile, expand, fraction, positive, set_claim,
-    time_limit,
-};
+use crate::suite::{Entry, Mistake, PHI, Plan, SuiteError, SuiteFile, expand, fraction, positive, set_claim};
 use clap::ValueEnum;
 use std::ops::Range;
 use std::time::Duration;
@@ -74,10 +71,6 @@ fn in_0_1(text: &str) -> Result<f64, String> {
 
 fn above_0(text: &str) -> Result<f64, String> {
     number(text, positive)
-}
-
-fn seconds(text: &str) -> Result<f64, String> {
-    number(text, time_limit)
 }
 
 fn pair(text: &str) -> Result<(String, String), String> {

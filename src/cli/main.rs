@@ -4,7 +4,8 @@ use super::args::{Args, Command};
 use super::error::CliError;
 use super::exit::Exit;
 use super::output::tell;
-use super::{calibrate, completions, explain, figures, list, report, run, schema};
+use super::{calibrate, completions, explain, figures, list, new, report, run, schema, worker};
+use crate::plugins::set_gonio;
 use crate::registry::Registry;
 use clap::Parser;
 use std::panic::{AssertUnwindSafe, catch_unwind};
@@ -27,6 +28,9 @@ pub fn main(registry: Registry) -> ExitCode {
         }
     };
     let voice = args.voice;
+    if let Ok(path) = std::env::current_exe() {
+        set_gonio(path);
+    }
     let done = catch_unwind(AssertUnwindSafe(|| obey(args, &registry)));
     let done = done.unwrap_or_else(|_| Err(CliError::Internal("a panic, as told above".into())));
     match done {
@@ -47,8 +51,10 @@ fn obey(args: Args, registry: &Registry) -> Result<Exit, CliError> {
         Command::Explain(args) => explain::explain(&args),
         Command::Report(args) => report::report(&args, voice),
         Command::Figures(args) => figures::figures(&args, voice),
+        Command::New(args) => new::new(&args, voice),
         Command::Calibrate(args) => calibrate::calibrate(&args, voice),
         Command::Schema(args) => schema::schema(&args),
         Command::Completions(args) => completions::completions(&args),
+        Command::Worker(args) => worker::work(&args),
     }
 }

@@ -11,11 +11,13 @@ mod figures;
 mod interrupt;
 mod list;
 mod main;
+mod new;
 mod output;
 mod progress;
 mod report;
 mod run;
 mod schema;
+mod worker;
 
 pub use args::Args;
 pub use exit::Exit;

@@ -74,8 +74,9 @@ pub fn diagnose_here(results: &Results, more: &[Box<dyn Explanation>]) -> Vec<Di
     failing(results).into_iter().filter_map(said).collect()
 }
 
+/// An error is no measurement: there is nothing to explain.
 fn fails(case: &CaseResult) -> bool {
-    matches!(case.worst(), checks::Verdict::Fail | checks::Verdict::Error)
+    case.findings.iter().any(|f| f.outcome.verdict == checks::Verdict::Fail)
 }
 
 /// Whether a call to the subject may not return: one did not, or not in time.
@@ -85,7 +86,7 @@ fn hung(case: &CaseResult) -> bool {
             let late = |halt: &Halt| matches!(halt, Halt::Subject(SubjectError::TimedOut { .. }));
             evidence.halts.iter().any(|(_, halt)| late(halt))
         }
-        None => fails(case),
+        None => case.worst() == checks::Verdict::Error,
     }
 }
 

@@ -11,7 +11,7 @@ use std::collections::{HashMap, VecDeque};
 use std::panic::{AssertUnwindSafe, catch_unwind};
 use std::sync::atomic::{AtomicBool, Ordering};
 use std::sync::mpsc::{self, RecvTimeoutError, Sender};
-use std::sync::{Arc, Mutex};
+use std::sync::{Arc, Mutex, PoisonError};
 use std::time::{Duration, Instant};
 
 /// How a plan is run.
@@ -162,6 +162,8 @@ fn spawn_worker(pool: &rayon::ThreadPool, shared: &Arc<Shared>, sender: &Sender<
         while !shared.stop.load(Ordering::Relaxed) {
             let Some(index) = shared.queue.lock().ok().and_then(|mut q| q.pop_front()) else { return };
             let case = &shared.cases[index];
+            // Time spent on waiting for others is not the case's.
+            let _alone = case.subject.alone().map(|one| one.lock().unwrap_or_else(PoisonError::into_inner));
             let watch = Arc::new(Watch::new(case.settings.time_limit, shared.stop.clone()));
             if sender.send(Message::Started(index, watch.clone())).is_err() {
                 return;

@@ -73,7 +73,9 @@ fn hostile_u(dimensions: usize, precision: Precision) -> Vec<f64> {
     u
 }
 
-/// Equal calls give equal bits, whatever was called between them.
+/// Equal calls give equal numbers, whatever was called between them and whatever
+/// rows stand beside them. Code that works on several rows at once may round the last
+/// of a batch otherwise than the first.
 #[derive(Clone, Debug, Default, PartialEq, Serialize, Deserialize)]
 pub struct Repeats {
     /// sample() of equal u.
@@ -86,7 +88,8 @@ impl Repeats {
     /// Repeats a few hundred calls in another order and batch.
     pub fn gather(meter: &Meter, setup: &Setup, pilot: &Pilot) -> Result<Self, Halt> {
         const ROWS: usize = 256;
-        let mut found = Self::default();
+        let tolerance = setup.tolerance();
+        let mut found = Self { sample: Tally::new(tolerance), value: Tally::new(tolerance) };
         let has = meter.description.has;
         let wi = probes::directions(setup, pilot, ROWS / 2);
         let (d, channels) = (meter.dimensions(), meter.channels());
@@ -137,12 +140,7 @@ impl Repeats {
             for k in (0..ROWS).rev() {
                 let row = &u[k * d..(k + 1) * d];
                 meter.sample(setup.wo, row, setup.transport, &mut again)?;
-                let same = first.lobe[k] == again.lobe[0]
-                    && (!first.lobe[k].is_valid()
-                        || (first.wi[k] == again.wi[0]
-                            && first.pdf[k] == again.pdf[0]
-                            && first.weight_of(k) == again.weight_of(0)));
-                found.sample.look(if same { 0.0 } else { 1.0 }, || {
+                found.sample.look(difference(&first, k, &again), || {
                     Place::pair(setup.wo, first.wi[k])
                         .drawn_by(row)
                         .value("sample.pdf", first.pdf[k])
@@ -152,6 +150,21 @@ impl Repeats {
         }
         Ok(found)
     }
+}
+
+/// How far row `k` of `first` is from the only row of `again`.
+fn difference(first: &Samples, k: usize, again: &Samples) -> f64 {
+    if first.lobe[k] != again.lobe[0] {
+        return 1.0;
+    }
+    if !first.lobe[k].is_valid() {
+        return 0.0;
+    }
+    let weights = first.weight_of(k).iter().zip(again.weight_of(0)).map(|(a, b)| relative_error(*a, *b, 0.0));
+    let apart = (first.wi[k] - again.wi[0]).length();
+    // A number that is none counts as different, unless both are.
+    let worst = |most: f64, x: f64| if x <= most { most } else { x };
+    weights.fold(worst(apart, relative_error(first.pdf[k], again.pdf[0], 0.0)), worst)
 }
 
 /// Turning wo and wi together about the normal changes neither eval nor pdf.

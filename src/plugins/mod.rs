@@ -1,7 +1,24 @@
-//! Subjects in other languages, behind one contract (docs/plugins.md).
+//! Subjects in any language: programs, shared libraries, WebAssembly modules.
+//! `docs/plugins.md` is the contract.
 
-pub mod instance;
+mod conventions;
+mod description;
+mod instance;
+mod library;
 mod limits;
-pub mod wasm;
+mod open;
+mod plugin;
+mod probe;
+mod process;
+mod route;
+mod subject;
+mod wasm;
+mod wire;
 
+pub use conventions::{Conventions, Failure, Given, Up, Weight};
+pub use instance::{Call, Created, Fault, Function, Instance};
+pub use library::work;
 pub use limits::Limits;
+pub use open::Plugins;
+pub use process::{set_gonio, supervise};
+pub use route::Named;

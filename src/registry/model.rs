@@ -30,6 +30,8 @@ pub struct Model {
     kind: SubjectKind,
     doc: String,
     parameters: Vec<Parameter>,
+    /// Whether it takes parameters that it does not declare.
+    any: bool,
     build: Arc<Build>,
 }
 
@@ -55,6 +57,7 @@ impl Model {
             kind: SubjectKind::Bsdf,
             doc: doc.into(),
             parameters: Vec::new(),
+            any: false,
             build: Arc::new(build),
         }
     }
@@ -72,6 +75,7 @@ impl Model {
             kind: SubjectKind::Bsdf,
             doc: doc.into(),
             parameters: Vec::new(),
+            any: false,
             build: Arc::new(build),
         }
     }
@@ -181,6 +185,18 @@ impl Model {
         self
     }
 
+    /// Takes parameters that are not declared, of whatever kind: what it declares is
+    /// not known.
+    pub(crate) fn with_any_parameter(mut self) -> Self {
+        self.any = true;
+        self
+    }
+
+    /// Whether it takes parameters that it does not declare.
+    pub(crate) fn takes_any(&self) -> bool {
+        self.any
+    }
+
     /// Its name.
     pub fn name(&self) -> &str {
         &self.name
@@ -214,6 +230,9 @@ impl Model {
     /// All parameters, from those given and the defaults of the others.
     pub fn complete(&self, given: &[(String, Value)]) -> Result<Parameters, RegistryError> {
         let mut all = BTreeMap::new();
+        if self.any {
+            return Ok(Parameters(given.iter().cloned().collect()));
+        }
         for (name, value) in given {
             let parameter = self.parameter(name)?;
             parameter.check(value)?;
@@ -251,6 +270,15 @@ impl Model {
     /// at their default: `torrance-sparrow:distribution=ggx,alpha=0.1`. A value
     /// that holds a comma or a parenthesis stands in parentheses.
     pub fn spell(&self, parameters: &Parameters) -> String {
+        if self.any {
+            let given = parameters.0.iter().map(|(name, value)| format!("{name}={value}"));
+            let given: Vec<String> = given.collect();
+            return if given.is_empty() {
+                self.name.clone()
+            } else {
+                format!("{}:{}", self.name, given.join(","))
+            };
+        }
         let given: Vec<_> = self
             .parameters
             .iter()

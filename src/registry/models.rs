@@ -6,6 +6,7 @@ use super::parameter::{Kind, Parameters, Value};
 use super::spelling::{Spelling, parenthesised};
 use crate::bsdf::{Subject, SubjectKind};
 use crate::diagnosis::{Explanation, Textbook, View};
+use crate::plugins::{Limits, Named, Plugins};
 use crate::{models, mutants};
 use std::borrow::Cow;
 use std::sync::Arc;
@@ -21,6 +22,8 @@ pub struct Registry {
     hidden: Option<fn(&str) -> Option<Model>>,
     /// Explanations of failures besides those that come with gonio.
     explanations: Vec<Arc<dyn Explanation>>,
+    /// Models of plugins, opened where they are named.
+    plugins: Arc<Plugins>,
 }
 
 impl Registry {
@@ -75,6 +78,13 @@ impl Registry {
         self.explanations.iter().map(boxed).collect()
     }
 
+    /// With these limits for plugins; those that were opened are opened anew.
+    pub fn limited(&self, limits: &Limits) -> Self {
+        let same = self.plugins.limits() == limits;
+        let plugins = if same { self.plugins.clone() } else { Arc::new(Plugins::new(*limits)) };
+        Self { plugins, ..self.clone() }
+    }
+
     /// All models that are listed.
     pub fn models(&self) -> impl Iterator<Item = &Model> {
         self.models.iter()
@@ -84,6 +94,10 @@ impl Registry {
     pub fn model(&self, name: &str) -> Result<Cow<'_, Model>, RegistryError> {
         let listed = self.models.iter().find(|m| m.name() == name).map(Cow::Borrowed);
         let found = listed.or_else(|| self.hidden.and_then(|find| find(name)).map(Cow::Owned));
+        if let (None, Some(plugin)) = (&found, self.plugins.model(name)) {
+            let wrong = |message| RegistryError::Build { model: name.into(), message };
+            return plugin.map(Cow::Owned).map_err(wrong);
+        }
         found.ok_or_else(|| RegistryError::UnknownModel {
             name: name.into(),
             nearest: nearest(name, self.models.iter().map(Model::name)),
@@ -100,7 +114,9 @@ impl Registry {
         let applying: Vec<_> = spelling
             .parameters
             .iter()
-            .filter(|(name, _)| model.parameter(name).is_ok_and(|p| p.applies(&parameters)))
+            .filter(|(name, _)| {
+                model.takes_any() || model.parameter(name).is_ok_and(|p| p.applies(&parameters))
+            })
             .cloned()
             .collect();
         parameters = model.complete(&applying)?;
@@ -116,8 +132,8 @@ impl Registry {
     /// the path of a file: `measured:file=PATH`.
     pub fn spelling_of_file(&self, text: &str) -> Option<String> {
         let name = text.split_once(':').map_or(text, |(name, _)| name);
-        let is_file = self.model(name).is_err() && std::path::Path::new(text).is_file();
-        is_file.then(|| format!("{MEASURED}:file={}", parenthesised(text)))
+        let is_file = std::path::Path::new(text).is_file() && Named::of(name).is_none();
+        (is_file && self.model(name).is_err()).then(|| format!("{MEASURED}:file={}", parenthesised(text)))
     }
 
     /// The subject that the parameter `parameter` names, and its one spelling.

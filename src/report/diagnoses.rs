@@ -94,7 +94,7 @@ fn runner_up(behind: f64, claim: &Claim) -> String {
 }
 
 fn fails(finding: &Finding) -> bool {
-    matches!(finding.outcome.verdict, Verdict::Fail | Verdict::Error)
+    finding.outcome.verdict == Verdict::Fail
 }
 
 /// Which checks fail, and where: θ of wo, its side, and where wi is at the worst places.

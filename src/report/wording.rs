@@ -118,21 +118,23 @@ fn figure(value: f64) -> String {
 }
 
 /// Breaks lines at spaces so that they are at most `width` characters; words
-/// that are longer stay whole.
+/// that are longer stay whole. Lines that are broken already keep their indentation.
 pub fn wrapped(text: &str, width: usize) -> Vec<String> {
-    let mut lines = vec![String::new()];
-    for word in text.split_whitespace() {
-        let line = lines.last_mut().expect("there is one from the start");
-        if line.is_empty() {
+    let mut lines = Vec::new();
+    for whole in text.lines() {
+        let indent = &whole[..whole.len() - whole.trim_start().len()];
+        let mut line = String::new();
+        for word in whole.split_whitespace() {
+            let used = line.chars().count();
+            if used > 0 && used + 1 + word.chars().count() > width {
+                lines.push(std::mem::take(&mut line));
+            }
+            line.push_str(if line.is_empty() { indent } else { " " });
             line.push_str(word);
-        } else if line.chars().count() + 1 + word.chars().count() <= width {
-            line.push(' ');
-            line.push_str(word);
-        } else {
-            lines.push(word.to_string());
         }
+        lines.push(line);
     }
-    lines
+    if lines.is_empty() { vec![String::new()] } else { lines }
 }
 
 #[cfg(test)]
@@ -160,5 +162,10 @@ mod tests {
     fn wraps_at_spaces_only() {
         assert_eq!(wrapped("one two three", 7), ["one two", "three"]);
         assert_eq!(wrapped("abcdefghij k", 3), ["abcdefghij", "k"]);
+        assert_eq!(
+            wrapped("said:\n  File x, line 1\n\nend", 12),
+            ["said:", "  File x,", "  line 1", "", "end"]
+        );
+        assert_eq!(wrapped("", 3), [""]);
     }
 }

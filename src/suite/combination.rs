@@ -132,6 +132,10 @@ fn place_of(entry: &Entry, spelling: &Spelling) -> Range<usize> {
 fn values(model: &Model, entry: &Entry, mistakes: &mut Vec<Mistake>) -> Vec<Vec<(String, Value)>> {
     let mut all = Vec::new();
     for (name, values) in &entry.parameters {
+        if model.takes_any() {
+            all.push(values.iter().map(|v| (name.get_ref().clone(), v.get_ref().clone())).collect());
+            continue;
+        }
         let Ok(parameter) = model.parameter(name.get_ref()) else {
             mistakes.push(unknown_parameter(model, name));
             continue;

@@ -42,6 +42,7 @@ fn expand_after(
     registry: &Registry,
     mut mistakes: Vec<Mistake>,
 ) -> Result<Expanded, SuiteError> {
+    let registry = &registry.limited(&file.settings.limits);
     let (mut cases, mut refused) = (Vec::new(), 0);
     for entry in &file.entries {
         let Some(combinations) = Combinations::of(registry, entry, &mut mistakes) else { continue };

@@ -1,11 +1,12 @@
 //! The format of suite files.
 
 use super::mistake::{Mistake, SuiteError};
-use super::plan::{ClaimsPatch, Settings, Waiver};
+use super::plan::{Settings, Waiver};
 use super::promises::{claims, waivers};
 use super::reader::{Node, Reader, azimuth, entries, fraction, polar, positive};
-use crate::bsdf::Transport;
+use crate::bsdf::{ClaimsPatch, Transport};
 use crate::checks;
+use crate::plugins::Named;
 use crate::registry::{MEASURED, Value, nearest};
 use std::path::Path;
 use std::time::Duration;
@@ -91,6 +92,12 @@ pub struct Overrides {
     pub phi: Vec<f64>,
     /// Checks; the suite's where empty.
     pub checks: Vec<String>,
+    /// What one call of a plugin may take.
+    pub call_limit: Option<Duration>,
+    /// Bytes that a plugin may take.
+    pub memory: Option<u64>,
+    /// Whether libraries are loaded into gonio itself.
+    pub in_process: bool,
 }
 
 /// Polar angles where none are given: normal, generic, and towards grazing,
@@ -107,7 +114,7 @@ pub const SEED: u64 = 1;
 /// Probability of any false alarm where none is given.
 pub const FALSE_ALARM: f64 = 1e-6;
 
-const SUITE_KEYS: [&str; 11] = [
+const SUITE_KEYS: [&str; 13] = [
     "name",
     "seed",
     "false_alarm",
@@ -118,14 +125,26 @@ const SUITE_KEYS: [&str; 11] = [
     "phi",
     "cover",
     "time_limit",
+    "call_limit",
+    "memory",
     "checks",
 ];
 
 /// Keys of a `[[subject]]` that are not parameters of its model.
-pub(super) const SUBJECT_KEYS: [&str; 9] =
-    ["use", "claims", "waive", "reference", "theta", "phi", "cover", "samples", "label"];
-
-const FOREIGN_KEYS: [&str; 4] = ["process", "library", "wasm", "shader"];
+pub(super) const SUBJECT_KEYS: [&str; 12] = [
+    "use",
+    "process",
+    "library",
+    "wasm",
+    "claims",
+    "waive",
+    "reference",
+    "theta",
+    "phi",
+    "cover",
+    "samples",
+    "label",
+];
 
 impl SuiteFile {
     /// A suite without subjects, all at its defaults.
@@ -186,6 +205,10 @@ impl SuiteFile {
     pub fn apply(&mut self, overrides: &Overrides) {
         set(&mut self.seed, overrides.seed);
         set(&mut self.settings.samples, overrides.samples);
+        let limits = &mut self.settings.limits;
+        set(&mut limits.call, overrides.call_limit);
+        set(&mut limits.memory, overrides.memory);
+        limits.in_process |= overrides.in_process;
         if !overrides.theta.is_empty() {
             self.theta.clone_from(&overrides.theta);
             self.sides = false;
@@ -223,6 +246,14 @@ impl SuiteFile {
                 "time_limit" => {
                     let limit = reader.number(key, value, time_limit);
                     set(&mut self.settings.time_limit, limit.map(Duration::from_secs_f64));
+                }
+                "call_limit" => {
+                    let limit = reader.number(key, value, time_limit);
+                    set(&mut self.settings.limits.call, limit.map(Duration::from_secs_f64));
+                }
+                "memory" => {
+                    let memory = reader.number(key, value, mebibytes);
+                    set(&mut self.settings.limits.memory, memory.map(|mib| (mib as u64) << 20));
                 }
                 "checks" => {
                     for item in reader.items(key, value).unwrap_or_default() {
@@ -277,9 +308,11 @@ impl SuiteFile {
                 "phi" => entry.phi = reader.numbers(key, value, azimuth),
                 "cover" => entry.cover = cover(reader, value),
                 "samples" => entry.samples = reader.count(key, value),
-                _ if FOREIGN_KEYS.contains(&key) && !table.contains_key("use") => {
+                "process" => (named, model) = (true, self.read_command(reader, value)),
+                "library" | "wasm" => (named, model) = (true, self.read_plugin(reader, key, value)),
+                "shader" if !table.contains_key("use") => {
                     named = true;
-                    let message = format!("subjects from a `{key}` are not supported by this version");
+                    let message = "subjects from a `shader` are not supported by this version";
                     let help = "use = \"NAME\" takes a registered subject; `gonio list` shows them";
                     reader.note(Mistake::new(span, message, "not supported").help(help));
                 }
@@ -293,7 +326,8 @@ impl SuiteFile {
             }
         }
         if !named {
-            let help = "add use = \"NAME\" (`gonio list` shows the names) or file = \"PATH\"";
+            let help = "add use = \"NAME\" (`gonio list` shows the names), file = \"PATH\", process = [\"COMMAND\", …], \
+                library = \"PATH.so\" or wasm = \"PATH.wasm\"";
             // The span of an entry is its header.
             reader.note(Mistake::new(item.span(), "a [[subject]] without `use`", "what is it?").help(help));
         }
@@ -330,6 +364,69 @@ impl SuiteFile {
         files
     }
 
+    /// The path of a plugin, FILE or FILE#MODEL, relative to the suite's own folder.
+    fn read_plugin(&self, reader: &mut Reader, key: &str, value: &Node) -> Option<Spanned<String>> {
+        let text = reader.text(key, value)?;
+        let path = self.beside(text.get_ref());
+        let file = path.split('#').next().unwrap_or(&path);
+        let right = |named: &Option<Named>| match key {
+            "library" => matches!(named, Some(Named::Library(_))),
+            _ => matches!(named, Some(Named::Wasm(_))),
+        };
+        if !right(&Named::of(file)) {
+            let (what, help) = match (Path::new(file).is_file(), key) {
+                (false, _) => ("does not exist", "paths are relative to the folder of the suite"),
+                (true, "library") => ("is no shared library", "its name should end with .so, .dylib or .dll"),
+                (true, _) => ("is no WebAssembly module", "its name should end with .wasm"),
+            };
+            reader.note(Mistake::new(text.span(), format!("`{file}` {what}"), "this file").help(help));
+            return None;
+        }
+        Some(Spanned::new(text.span(), path))
+    }
+
+    /// A command, as a list of words or as a shell would read it. A word that names a
+    /// file beside the suite is the path of that file.
+    fn read_command(&self, reader: &mut Reader, value: &Node) -> Option<Spanned<String>> {
+        let mut words = Vec::new();
+        for item in reader.items("process", value)? {
+            let word = reader.text("process", item)?.into_inner();
+            match value.get_ref() {
+                DeValue::String(_) => match shell_words::split(&word) {
+                    Ok(split) => words.extend(split),
+                    Err(e) => {
+                        reader.note(Mistake::new(item.span(), format!("`process`: {e}"), "here"));
+                        return None;
+                    }
+                },
+                _ => words.push(word),
+            }
+        }
+        let program = words.first_mut()?;
+        if !program.contains('/') {
+            // A command is told from a model by its path, or by having arguments.
+            match which(program) {
+                Some(path) => *program = path,
+                None if Path::new(&self.beside(program)).is_file() => {}
+                None => {
+                    let message = format!("no program `{program}` is in PATH or beside the suite");
+                    reader.note(Mistake::new(value.span(), message, "this command"));
+                    return None;
+                }
+            }
+        }
+        let words: Vec<String> = words.iter().map(|word| self.beside(word)).collect();
+        Some(Spanned::new(value.span(), shell_words::join(words)))
+    }
+
+    /// The path of a file beside the suite; other words as they are.
+    fn beside(&self, word: &str) -> String {
+        let folder = Path::new(&self.source_name).parent().unwrap_or(Path::new(""));
+        let path = folder.join(word);
+        let file = word.split('#').next().unwrap_or(word);
+        if folder.join(file).is_file() { path.display().to_string() } else { word.into() }
+    }
+
     fn read_label(&self, reader: &mut Reader, value: &Node) -> Option<String> {
         let label = reader.text("label", value)?;
         if self.entries.iter().any(|e| e.label.as_ref() == Some(label.get_ref())) {
@@ -357,6 +454,23 @@ pub fn time_limit(seconds: f64) -> Result<f64, String> {
     } else {
         Err(format!("{seconds} is not a time; type seconds, for example 60"))
     }
+}
+
+/// Mebibytes that a plugin may take.
+pub fn mebibytes(mib: f64) -> Result<f64, String> {
+    // Less than 16 starts no program; more than 2^24 (16 TiB) is a slip.
+    if (16.0..=16_777_216.0).contains(&mib) {
+        Ok(mib)
+    } else {
+        Err(format!("{mib} MiB is no memory for a plugin; type for example 4096"))
+    }
+}
+
+/// The path of a program that is in PATH.
+fn which(program: &str) -> Option<String> {
+    let paths = std::env::var_os("PATH")?;
+    let found = std::env::split_paths(&paths).map(|folder| folder.join(program)).find(|path| path.is_file());
+    found.map(|path| path.display().to_string())
 }
 
 fn cover(reader: &mut Reader, value: &Node) -> Option<Cover> {

@@ -17,9 +17,9 @@ pub(crate) mod tests;
 
 pub use embedded::{EMBEDDED, Embedded, embedded};
 pub use expand::{Expanded, expand, load};
-pub use file::{Cover, Entry, FALSE_ALARM, Overrides, PHI, SEED, SuiteFile, THETA, time_limit};
+pub use file::{Cover, Entry, FALSE_ALARM, Overrides, PHI, SEED, SuiteFile, THETA, mebibytes, time_limit};
 pub use mistake::{Mistake, SuiteError};
-pub use plan::{Case, ClaimsPatch, Plan, Settings, Waiver};
+pub use plan::{Case, Plan, Settings, Waiver};
 pub use promises::set_claim;
 pub use reader::{azimuth, count, fraction, polar, positive};
 pub use reproduce::reproduce;

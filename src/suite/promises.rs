@@ -2,8 +2,9 @@
 
 use super::file::check_id;
 use super::mistake::Mistake;
-use super::plan::{ClaimsPatch, Waiver};
+use super::plan::Waiver;
 use super::reader::{Node, Reader, entries, positive};
+use crate::bsdf::ClaimsPatch;
 use serde::Deserialize;
 use std::ops::Range;
 use toml::Spanned;

@@ -35,6 +35,13 @@ pub fn reproduce(program: &str, plan: &Plan, case: &Case, share: f64, check: &st
     if own.time_limit != default.time_limit {
         option("time-limit", own.time_limit.as_secs_f64().to_string());
     }
+    let (usual, limits) = (&default.limits, &own.limits);
+    if limits.call != usual.call {
+        option("call-limit", limits.call.as_secs_f64().to_string());
+    }
+    if limits.memory != usual.memory {
+        option("memory", limits.mebibytes().to_string());
+    }
     if let Some(reference) = &case.reference {
         option("reference", reference.clone());
     }
@@ -46,6 +53,9 @@ pub fn reproduce(program: &str, plan: &Plan, case: &Case, share: f64, check: &st
     }
     option("share", format!("{share:e}"));
     option("check", check.into());
+    if limits.in_process {
+        words.push("--in-process".into());
+    }
     words.iter().map(|w| quoted(w)).collect::<Vec<_>>().join(" ")
 }
 

@@ -243,6 +243,7 @@ fn overrides_take_the_place_of_what_is_written() {
         theta: vec![40.0],
         phi: vec![5.0],
         checks: vec!["mis".into()],
+        ..Overrides::default()
     };
     let plan = load("t", text, &registry(), &overrides).ok().unwrap().plan;
     // One mode of transport each; no other side where θ is asked for.

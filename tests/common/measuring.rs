@@ -1,10 +1,10 @@
 //! Cases measured as a suite would.
 
-use gonio::bsdf::{Subject, Transport};
+use gonio::bsdf::{ClaimsPatch, Subject, Transport};
 use gonio::checks::Verdict;
 use gonio::engine::{CaseResult, Options, run};
 use gonio::evidence::Company;
-use gonio::suite::{Case, ClaimsPatch, Plan, Settings};
+use gonio::suite::{Case, Plan, Settings};
 use std::collections::{BTreeMap, BTreeSet};
 use std::sync::Arc;
 use std::time::Duration;

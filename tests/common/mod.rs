@@ -4,6 +4,7 @@
 pub mod glass;
 pub mod measuring;
 pub mod plastic;
+pub mod tools;
 
 use gonio::bsdf::{Bsdf, Description, Direction, Lobe, RandomNumbers, Sample, Spectrum, Transport};
 use std::f64::consts::PI;

@@ -4,12 +4,12 @@
 use super::distribution::Distribution;
 use super::subject::{Measured, Slice, Tamper};
 use super::{Side, read};
-use crate::bsdf::{Description, Direction, Samples, Subject, SubjectError, Transport};
+use crate::bsdf::{ClaimsPatch, Description, Direction, Samples, Subject, SubjectError, Transport};
 use crate::checks::Verdict;
 use crate::engine::{CaseResult, Options, run};
 use crate::evidence::Company;
 use crate::sphere::{Cell, Chart, Shape};
-use crate::suite::{Case, ClaimsPatch, Plan, Settings};
+use crate::suite::{Case, Plan, Settings};
 use std::collections::BTreeSet;
 use std::sync::Arc;
 

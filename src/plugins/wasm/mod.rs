@@ -19,4 +19,5 @@ mod trap;
 mod wasi;
 
 pub use module::Module;
-pub use problem::{ModuleError, Problem};
+#[cfg(test)]
+use problem::ModuleError;

@@ -57,7 +57,7 @@ pub fn eval(body: &str) -> String {
 
 /// Small limits, so that tests of them end soon.
 pub fn limits() -> Limits {
-    Limits { call: Duration::from_secs(1), memory: 64 << 20 }
+    Limits { call: Duration::from_secs(1), memory: 64 << 20, ..Limits::default() }
 }
 
 /// The module `bytes`, within [`limits`].

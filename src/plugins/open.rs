@@ -1,0 +1,82 @@
+//! From a name to the model of a plugin.
+
+use super::description::parameters_json;
+use super::limits::Limits;
+use super::plugin::Plugin;
+use super::route::Named;
+use super::subject::{Broken, Foreign};
+use crate::bsdf::{Subject, SubjectError};
+use crate::registry::Model;
+use std::collections::HashMap;
+use std::sync::{Arc, Mutex, PoisonError};
+
+type Opened = Result<Arc<Plugin>, String>;
+
+/// The plugins that were opened, each once.
+#[derive(Default)]
+pub struct Plugins {
+    limits: Limits,
+    opened: Mutex<HashMap<String, Opened>>,
+}
+
+impl Plugins {
+    /// None yet; they will have these limits.
+    pub fn new(limits: Limits) -> Self {
+        Self { limits, opened: Mutex::default() }
+    }
+
+    /// What plugins may take.
+    pub fn limits(&self) -> &Limits {
+        &self.limits
+    }
+
+    /// The model that `name` names, FILE, FILE#MODEL or a command; `None` if it names
+    /// no plugin. A plugin that cannot be opened has a model too, whose subjects say
+    /// why: it must not keep others from being measured.
+    pub fn model(&self, name: &str) -> Option<Result<Model, String>> {
+        let (file, wanted) = match name.rsplit_once('#') {
+            // A word of a command may begin with #.
+            Some((file, model)) if !file.ends_with(char::is_whitespace) && Named::of(file).is_some() => {
+                (file, Some(model))
+            }
+            _ => (name, None),
+        };
+        let named = Named::of(file)?;
+        let opened = {
+            let mut all = self.opened.lock().unwrap_or_else(PoisonError::into_inner);
+            all.entry(file.into()).or_insert_with(|| self.open(file, &named)).clone()
+        };
+        let plugin = match opened {
+            Ok(plugin) => plugin,
+            Err(why) => return Some(Ok(broken(name, why))),
+        };
+        let description = match plugin.hello.model(file, wanted) {
+            Ok(model) => model.clone(),
+            Err(why) => return Some(Err(format!("`{file}` {why}"))),
+        };
+        let (declaring, doc) = (description.clone(), description.doc.clone());
+        let called = name.to_string();
+        let model = Model::dynamic(name, doc, move |parameters| {
+            let made = Foreign::create(&plugin, &description, parameters_json(parameters));
+            Ok(match made {
+                Ok(subject) => Arc::new(subject) as Arc<dyn Subject>,
+                Err(why) => Arc::new(Broken { name: called.clone(), why }),
+            })
+        });
+        Some(Ok(declaring.declare(model)))
+    }
+
+    fn open(&self, file: &str, named: &Named) -> Opened {
+        let opened = named.route(&self.limits).and_then(|route| Plugin::open(file, route, &self.limits));
+        opened.map(Arc::new).map_err(|fault| fault.to_string())
+    }
+}
+
+/// The model of a plugin that cannot be opened.
+fn broken(name: &str, why: String) -> Model {
+    let called = name.to_string();
+    Model::new(name, "a plugin that cannot be opened", move |_| {
+        Ok(Broken { name: called.clone(), why: SubjectError::Broken(why.clone()) })
+    })
+    .with_any_parameter()
+}

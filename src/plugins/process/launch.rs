@@ -1,0 +1,60 @@
+//! How a plugin's process is started.
+
+use crate::plugins::limits::Limits;
+use std::ffi::OsString;
+use std::os::unix::process::CommandExt;
+use std::path::PathBuf;
+use std::process::{Child, Command, Stdio};
+use std::sync::OnceLock;
+
+static GONIO: OnceLock<PathBuf> = OnceLock::new();
+
+/// Says that this very program answers `gonio worker`: whoever calls
+/// [`gonio::main`](crate::main) does.
+pub fn set_gonio(path: PathBuf) {
+    let _ = GONIO.set(path);
+}
+
+/// The program that supervises plugins and loads libraries: this one, or the
+/// `gonio` that is installed.
+fn gonio() -> Result<PathBuf, String> {
+    if let Some(path) = GONIO.get() {
+        return Ok(path.clone());
+    }
+    let paths = std::env::var_os("PATH").unwrap_or_default();
+    let here = std::env::split_paths(&paths).map(|folder| folder.join("gonio")).find(|path| path.is_file());
+    here.ok_or_else(|| {
+        "a plugin runs under the `gonio` command, which is not in PATH; `cargo install gonio` puts it there"
+            .into()
+    })
+}
+
+/// What is started.
+#[derive(Clone, Debug, PartialEq, Eq, Hash)]
+pub enum Launch {
+    /// A command.
+    Command(Vec<OsString>),
+    /// gonio's own worker for this shared library.
+    Library(PathBuf),
+}
+
+impl Launch {
+    /// Starts it under supervision, with pipes for all three streams.
+    pub fn start(&self, limits: &Limits) -> Result<Child, String> {
+        let gonio = gonio()?;
+        let mut command = Command::new(&gonio);
+        command.args(["worker", "supervise", "--memory", &limits.memory.to_string(), "--"]);
+        match self {
+            Self::Command(words) => command.args(words),
+            Self::Library(path) => command.arg(&gonio).args(["worker", "library"]).arg(path),
+        };
+        command
+            .stdin(Stdio::piped())
+            .stdout(Stdio::piped())
+            .stderr(Stdio::piped())
+            // An interrupt at the terminal is for gonio, which then ends its plugins.
+            .process_group(0)
+            .spawn()
+            .map_err(|e| format!("`{}` cannot be started: {e}", gonio.display()))
+    }
+}

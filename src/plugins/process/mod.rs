@@ -1,0 +1,10 @@
+//! Plugins in processes of their own.
+
+mod child;
+mod last_words;
+mod launch;
+mod supervise;
+
+pub use child::Child;
+pub use launch::{Launch, set_gonio};
+pub use supervise::supervise;

@@ -1,0 +1,207 @@
+//! Plugins as they are met: right ones, and hostile ones in every way that can be
+//! thought of. Each gets its verdict in bounded time, the rest of the run is complete,
+//! and no process is left.
+
+#[path = "plugins/sandbox.rs"]
+mod sandbox;
+
+use sandbox::{Sandbox, library, script};
+
+/// What is shown of a subject that does `deed`.
+fn library_that(deed: &str) -> String {
+    format!("{}:deed={deed}", library("hostile").display())
+}
+
+#[test]
+fn a_shared_library_passes() {
+    let run = Sandbox::new("passes").check(&library_that("none"), &["--theta", "60", "--samples", "2^16"]);
+    assert_eq!(run.code, Some(0), "{}", run.text);
+    assert!(run.text.contains("0 failed"), "{}", run.text);
+}
+
+#[test]
+fn in_process_gives_the_same_report() {
+    let sandbox = Sandbox::new("in-process");
+    let arguments = ["--theta", "60", "--samples", "2^16", "--format", "json"];
+    let apart = sandbox.check(&library_that("none"), &arguments);
+    let within = sandbox.check(&library_that("none"), &[&arguments[..], &["--in-process"]].concat());
+    assert_eq!((apart.code, within.code), (Some(0), Some(0)), "{}{}", apart.text, within.text);
+    let results = |json: &str| {
+        let mut report: serde_json::Value = serde_json::from_str(json).unwrap();
+        for result in report["results"].as_array_mut().unwrap() {
+            result["command"].take();
+        }
+        report["results"].take()
+    };
+    assert_eq!(results(&apart.output), results(&within.output));
+}
+
+/// Each deed ends its case with an error that tells it, and a suite goes on.
+fn told(subject: &str, deed: &str, parts: &[&str]) {
+    let sandbox = Sandbox::new(&format!("{}-{deed}", if subject.contains(".so") { "so" } else { "py" }));
+    // To take all memory takes time.
+    let limit = if deed == "allocate" { "30" } else { "1" };
+    let run = sandbox.suite(subject, &["--memory", "300", "--call-limit", limit]);
+    assert_eq!(run.code, Some(3), "{deed}: {}", run.text);
+    for part in parts {
+        assert!(run.text.contains(part), "{deed}: no `{part}` in\n{}", run.text);
+    }
+    // The other subject of the suite has all its results.
+    let row = run.text.lines().find(|l| l.starts_with("lambert ")).unwrap_or_else(|| panic!("{}", run.text));
+    assert!(!row.contains('E') && row.contains('✓'), "{row}");
+    assert!(run.seconds < 60.0, "{deed}: {} s", run.seconds);
+    assert_eq!(sandbox.left(), Vec::<String>::new(), "{deed}");
+}
+
+#[test]
+fn a_library_that_crashes() {
+    for (deed, parts) in [
+        ("segfault", &["SIGSEGV", "eval() of"][..]),
+        ("abort", &["SIGABRT"]),
+        ("divide", &["SIGFPE"]),
+        ("stack", &["overflowed its stack"]),
+    ] {
+        told(&library_that(deed), deed, parts);
+    }
+}
+
+#[test]
+fn a_library_that_leaves() {
+    told(&library_that("exit"), "exit", &["ended with exit code 0 in eval()"]);
+    told(&library_that("close"), "close", &["closed its standard output"]);
+}
+
+#[test]
+fn a_library_that_takes_all_memory() {
+    told(&library_that("allocate"), "allocate", &["SIGABRT", "memory is limited to 300 MiB"]);
+}
+
+#[test]
+fn a_library_that_loops() {
+    told(&library_that("loop"), "loop", &["did not answer eval()", "within 1 s"]);
+}
+
+#[test]
+fn a_library_that_says_why_it_cannot() {
+    told(&library_that("refuse"), "refuse", &["the table of this material is empty"]);
+}
+
+#[test]
+fn what_a_library_prints_or_forks_is_no_error_and_is_not_left() {
+    for deed in ["print", "fork", "daemon"] {
+        let sandbox = Sandbox::new(deed);
+        let run =
+            sandbox.check(&library_that(deed), &["--theta", "60", "--samples", "2^14", "--check", "energy"]);
+        assert_eq!(run.code, Some(0), "{deed}: {}", run.text);
+        assert_eq!(sandbox.left(), Vec::<String>::new(), "{deed}");
+    }
+}
+
+#[test]
+fn nan_is_a_finding_and_no_broken_protocol() {
+    for subject in [library_that("nan"), script("frames nan"), script("json-lines nan")] {
+        let run = Sandbox::new("nan").check(&subject, &["--theta", "60", "--samples", "2^14"]);
+        assert_eq!(run.code, Some(1), "{}", run.text);
+        assert!(run.text.contains("eval() is finite"), "{}", run.text);
+    }
+}
+
+#[test]
+fn both_wires_give_the_same_numbers() {
+    let results = |wire: &str| {
+        // The subject's name keys its random numbers.
+        let label = ["--theta", "60", "--samples", "2^14", "--format", "json", "--check", "energy"];
+        let run = Sandbox::new(wire).check(&script(&format!("{wire} none")), &label);
+        assert_eq!(run.code, Some(0), "{}", run.text);
+        let report: serde_json::Value = serde_json::from_str(&run.output).unwrap();
+        report["results"][0]["effect"].clone()
+    };
+    let frames = results("frames");
+    assert!(frames["value"].is_number(), "{frames}");
+    assert_eq!(frames, results("json-lines"));
+}
+
+#[test]
+fn a_program_that_breaks_the_wire() {
+    for (deed, wire, part) in [
+        ("few", "frames", "1 numbers (8 bytes) where"),
+        ("few", "json-lines", "1 rows of `f` where"),
+        ("late-noise", "frames", "`debugging…"),
+        ("late-noise", "json-lines", "`debugging…"),
+        ("garbage", "frames", "fa fb fc fd fe ff"),
+        ("half", "frames", "ended with exit code 3 in eval()"),
+        ("refuse", "frames", "wo is too steep"),
+        ("refuse", "json-lines", "wo is too steep"),
+    ] {
+        told(&script(&format!("{wire} {deed}")), &format!("{wire}-{deed}"), &[part]);
+    }
+}
+
+#[test]
+fn a_program_that_ends_or_hangs() {
+    for (deed, parts) in [
+        ("raise", &["ended with exit code 1", "ValueError: no such material", "line"][..]),
+        ("exit", &["ended with exit code 0"]),
+        ("kill", &["SIGKILL"]),
+        ("close", &["closed its standard output"]),
+        ("deaf", &["closed its standard input"]),
+        ("hang", &["within 1 s", "now I think about it"]),
+        ("flood", &["within 1 s", "xxxx"]),
+    ] {
+        told(&script(&format!("frames {deed}")), deed, parts);
+    }
+}
+
+#[test]
+fn a_program_that_never_begins() {
+    for (deed, wire, parts) in [
+        ("noise", "frames", &["Hello, I am a plugin", "standard error"][..]),
+        ("noise", "json-lines", &["Hello, I am a plugin", "standard error"]),
+        ("late", "frames", &["ended with exit code 1 in its description", "cannot read the configuration"]),
+        ("claim", "frames", &["isotropik"]),
+        ("old", "json-lines", &["protocol 7"]),
+    ] {
+        told(&script(&format!("{wire} {deed}")), &format!("{wire}-{deed}"), parts);
+    }
+    told("python4 brdf.py", "missing", &["cannot start `python4`"]);
+}
+
+#[test]
+fn children_of_a_program_are_not_left() {
+    let sandbox = Sandbox::new("children");
+    let run = sandbox
+        .check(&script("frames children"), &["--theta", "60", "--samples", "2^14", "--check", "energy"]);
+    assert_eq!(run.code, Some(0), "{}", run.text);
+    assert_eq!(sandbox.left(), Vec::<String>::new());
+}
+
+#[test]
+fn a_killed_gonio_leaves_no_process() {
+    let sandbox = Sandbox::new("killed");
+    let mut gonio = sandbox.start(&script("frames hang"), &["--theta", "60", "--call-limit", "100"]);
+    let begun = || sandbox.left().iter().any(|line| line.contains("hostile.py"));
+    assert!(sandbox::within(30.0, begun), "it has not begun");
+    // Let it be in the middle of a call.
+    std::thread::sleep(std::time::Duration::from_millis(500));
+    gonio.kill().unwrap();
+    gonio.wait().unwrap();
+    assert!(sandbox::within(10.0, || sandbox.left().is_empty()), "{:?}", sandbox.left());
+}
+
+#[test]
+fn mistakes_in_naming_a_plugin_are_told() {
+    let sandbox = Sandbox::new("names");
+    let so = library("hostile");
+    for (subject, part) in [
+        (format!("{}#hostil", so.display()), "did you mean `hostile`?"),
+        (format!("{}:deeds=none", so.display()), "did you mean `deed`?"),
+        (format!("{}:deed=sefgault", so.display()), "did you mean `segfault`?"),
+        ("./nothing.so".into(), "there is no such file"),
+    ] {
+        let run = sandbox.check(&subject, &[]);
+        assert_eq!(run.code, Some(2), "{subject}: {}", run.text);
+        assert!(run.text.contains(part), "{subject}: {}", run.text);
+    }
+    let list = sandbox.gonio(&["list", so.to_str().unwrap()]);
+    assert!(list.output.contains("deed") && list.output.contains("segfault"), "{}", list.output);
+}
