@@ -160,7 +160,7 @@ impl Instance for Running {
     fn describe(&mut self) -> Result<String, Fault> {
         let (describe, doing) = (self.exports.describe, Doing::Describe);
         match self.run(&describe, 0, doing)? {
-            0 => Err(self.end(format!("returned NULL in {doing}: it should return its description"))),
+            0 => Err(self.refusal(doing)),
             address => self.text(address, doing),
         }
     }

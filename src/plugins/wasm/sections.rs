@@ -33,6 +33,11 @@ const SECTIONS: [(&str, &str, u32); 13] = [
 
 const EXPORT: u8 = 7;
 const START_SECTION: u8 = 8;
+const CODE: u8 = 10;
+
+/// Local variables that all functions may have together. A few bytes declare
+/// thousands, and compiling takes time for each.
+const MOST_LOCALS: u32 = 2_000_000;
 
 /// Checks the sections of `bytes`, and gives the module with its start section,
 /// if it has one, made an export that is called [`START`].
@@ -48,6 +53,7 @@ pub fn checked(bytes: &[u8]) -> Result<Cow<'_, [u8]>, Problem> {
         at = section.content.end;
         match section.id {
             EXPORT => exports = Some(section),
+            CODE => check_locals(&bytes[..at], section.content.start)?,
             START_SECTION if start.is_some() => return Ok(Cow::Borrowed(bytes)), // not valid
             START_SECTION => start = Some(section),
             _ => (),
@@ -111,6 +117,27 @@ fn section(bytes: &[u8], begin: usize) -> Result<Section, Problem> {
         }
     }
     Ok(Section { id, begin, content })
+}
+
+/// Counts the local variables of the bodies in the code section at `at`.
+fn check_locals(bytes: &[u8], at: usize) -> Result<(), Problem> {
+    let (bodies, mut next) = number(bytes, at)?;
+    let mut locals = 0_u32;
+    for _ in 0..bodies {
+        let (size, body) = number(bytes, next)?;
+        next = body + size as usize;
+        let (groups, mut at) = number(bytes, body)?;
+        // Each is a number and a type of one byte; longer types are not valid here.
+        for _ in 0..groups {
+            let (count, ty) = number(bytes, at)?;
+            locals = locals.saturating_add(count);
+            at = ty + 1;
+        }
+        if locals > MOST_LOCALS {
+            return Err(Problem::TooMany { count: locals, what: "local variables", most: MOST_LOCALS });
+        }
+    }
+    Ok(())
 }
 
 /// The LEB128 number at `at`, and where it ends.
