@@ -2,9 +2,9 @@
 #![allow(dead_code)]
 
 pub mod glass;
+pub mod languages;
 pub mod measuring;
 pub mod plastic;
-pub mod languages;
 pub mod tools;
 
 use gonio::bsdf::{Bsdf, Description, Direction, Lobe, RandomNumbers, Sample, Spectrum, Transport};

@@ -19,6 +19,9 @@ const PIPE: usize = 1 << 20;
 /// How long an ended program may take to be gone: its supervisor ends what it left.
 const LAST: Duration = Duration::from_secs(1);
 
+/// How long its supervisor is waited for.
+const PATIENCE: Duration = Duration::from_secs(20);
+
 /// The process of a plugin.
 pub struct Child {
     process: std::process::Child,
@@ -244,13 +247,10 @@ impl Drop for Child {
     fn drop(&mut self) {
         self.input = None;
         self.errors = None;
-        let deadline = Instant::now() + LAST;
-        while matches!(self.process.try_wait(), Ok(None)) {
-            if Instant::now() > deadline {
-                let _ = self.process.kill();
-                let _ = self.process.wait();
-                return;
-            }
+        // It is not killed: only it can end what the plugin has started, thousands of
+        // processes perhaps, and it goes on with that when gonio has ended.
+        let deadline = Instant::now() + PATIENCE;
+        while matches!(self.process.try_wait(), Ok(None)) && Instant::now() < deadline {
             std::thread::sleep(Duration::from_millis(1));
         }
     }

@@ -8,13 +8,16 @@
 use rustix::event::{PollFd, PollFlags, poll};
 use rustix::process::{Pid, Resource, Rlimit, Signal, WaitOptions, WaitStatus};
 use rustix::process::{kill_process, set_child_subreaper, setrlimit, wait, waitpid};
-use std::collections::BTreeSet;
+use std::collections::{BTreeSet, HashMap};
 use std::ffi::OsString;
 use std::process::Command;
 use std::time::Duration;
 
 /// As shells tell that a command cannot be started.
 const CANNOT_START: i32 = 127;
+
+/// How often processes are looked for and ended, at most.
+const ROUNDS: usize = 1000;
 
 /// Runs `command` with at most `memory` bytes of address space and no core dump,
 /// and ends as it does, once all that it started has ended too.
@@ -77,15 +80,15 @@ fn end_as(status: WaitStatus) -> i32 {
 /// forks without end would outrun a killer.
 fn end_descendants() {
     let mut stopped = BTreeSet::new();
-    // A hundred rounds take a second or more.
-    for _ in 0..100 {
+    // What forks faster than this is stopped in the end by what it may start.
+    for _ in 0..ROUNDS {
         let new: Vec<i32> = descendants().into_iter().filter(|pid| stopped.insert(*pid)).collect();
         if new.is_empty() {
             break;
         }
         signal_all(&new, Signal::STOP);
     }
-    for _ in 0..100 {
+    for _ in 0..ROUNDS {
         let left = descendants();
         if left.is_empty() {
             return;
@@ -104,7 +107,7 @@ fn signal_all(pids: &[i32], signal: Signal) {
 
 /// All processes that descend from this one and are not zombies.
 fn descendants() -> Vec<i32> {
-    let mut parents: Vec<(i32, i32)> = Vec::new();
+    let mut children: HashMap<i32, Vec<i32>> = HashMap::new();
     for entry in std::fs::read_dir("/proc").into_iter().flatten().flatten() {
         let Some(pid) = entry.file_name().to_str().and_then(|name| name.parse().ok()) else { continue };
         let Ok(stat) = std::fs::read_to_string(entry.path().join("stat")) else { continue };
@@ -114,13 +117,13 @@ fn descendants() -> Vec<i32> {
         if let (Some(state), Some(Ok(parent))) = (words.next(), words.next().map(str::parse))
             && state != "Z"
         {
-            parents.push((pid, parent));
+            children.entry(parent).or_default().push(pid);
         }
     }
     let mut found = vec![rustix::process::getpid().as_raw_pid()];
     let mut next = 0;
     while let Some(parent) = found.get(next).copied() {
-        found.extend(parents.iter().filter(|(_, p)| *p == parent).map(|(pid, _)| *pid));
+        found.extend(children.remove(&parent).unwrap_or_default());
         next += 1;
     }
     found.split_off(1)
