@@ -157,18 +157,18 @@ class RoughConductor(Plugin):
     def __init__(
         self,
         alpha: float = gonio.number(0.1, 1e-3, 1, "roughness, a slope", role="roughness"),
-        alpha_v: float = gonio.number(0, 0, 1, "roughness along y; that of x if 0"),
+        stretch: float = gonio.number(1, 0.1, 10, "roughness along y over that along x"),
         distribution: str = gonio.choice(["ggx", "beckmann"], "of normals"),
         sample_visible: str = gonio.choice(["on", "off"], "draws the normals that wo sees"),
         material: str = gonio.choice(["none", "Cu", "Au", "Al"], "none reflects all"),
     ):
-        self.claims = {"isotropic": alpha_v in (0, alpha)}
+        self.claims = {"isotropic": stretch == 1}
         self.load(
             {
                 "type": "roughconductor",
                 "material": material,
                 "alpha_u": alpha,
-                "alpha_v": alpha_v or alpha,
+                "alpha_v": alpha * stretch,
                 "distribution": distribution,
                 "sample_visible": sample_visible == "on",
             }
@@ -199,18 +199,18 @@ class RoughDielectric(Plugin):
     def __init__(
         self,
         alpha: float = gonio.number(0.1, 1e-3, 1, "roughness, a slope", role="roughness"),
-        alpha_v: float = gonio.number(0, 0, 1, "roughness along y; that of x if 0"),
+        stretch: float = gonio.number(1, 0.1, 10, "roughness along y over that along x"),
         distribution: str = gonio.choice(["ggx", "beckmann"], "of normals"),
         sample_visible: str = gonio.choice(["on", "off"], "draws the normals that wo sees"),
         int_ior: float = gonio.number(1.5, 1, 3, "index of refraction behind"),
         ext_ior: float = gonio.number(1, 1, 3, "index of refraction in front"),
     ):
-        self.claims = glass(int_ior, ext_ior) | {"isotropic": alpha_v in (0, alpha)}
+        self.claims = glass(int_ior, ext_ior) | {"isotropic": stretch == 1}
         self.load(
             {
                 "type": "roughdielectric",
                 "alpha_u": alpha,
-                "alpha_v": alpha_v or alpha,
+                "alpha_v": alpha * stretch,
                 "distribution": distribution,
                 "sample_visible": sample_visible == "on",
                 "int_ior": int_ior,
@@ -247,7 +247,7 @@ class RoughPlastic(Plugin):
 
     def __init__(
         self,
-        alpha: float = gonio.number(0.1, 1e-3, 1, "roughness, a slope", role="roughness"),
+        alpha: float = gonio.number(0.1, 1e-3, 1, "roughness, a slope"),
         reflectance: float = gonio.number(0.5, 0, 1, "of the base"),
         distribution: str = gonio.choice(["ggx", "beckmann"], "of normals"),
         sample_visible: str = gonio.choice(["on", "off"], "draws the normals that wo sees"),
@@ -276,7 +276,7 @@ class Principled(Plugin):
     def __init__(
         self,
         base_color: float = gonio.number(0.5, 0, 1, "grey"),
-        roughness: float = gonio.number(0.5, 0, 1, "its square root", role="roughness"),
+        roughness: float = gonio.number(0.5, 0, 1, "its square root"),
         anisotropic: float = gonio.number(0, 0, 1, "stretches highlights"),
         metallic: float = gonio.number(0, 0, 1, "share of a metal"),
         spec_trans: float = gonio.number(0, 0, 1, "share of glass in what is no metal"),
