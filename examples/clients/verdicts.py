@@ -89,7 +89,9 @@ def compare(report: dict, known: dict) -> int:
             print(f"ok     {subject}: {told}")
         else:
             wrong += 1
-            XXf"WRONG  {subject}: {told}; should {expected}", *broken[subject][:1], sep="\n       ")
+            expected = f"fail {', '.join(sorted(must))}" if must else "pass"
+            expected += "".join(f" [{cause}]" for cause in fails.get("causes", []))
+            print(f"WRONG  {subject}: {told}; should {expected}", *broken[subject][:1], sep="\n       ")
     for subject in found:
         print(f"WRONG  {subject}: nothing is known of it; add it to suites/known.json")
         wrong += 1
