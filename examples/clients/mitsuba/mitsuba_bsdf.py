@@ -71,11 +71,11 @@ class Plugin:
 
     def eval(self, wo, wi, mode):
         value = self.each(wo, mode, wi, lambda context, si, w: self.bsdf.eval(context, si, mi.Vector3f(*w)))
-        return rows(value, len(wi))
+        return rows(value, len(wi), 3)
 
     def pdf(self, wo, wi, mode):
         value = self.each(wo, mode, wi, lambda context, si, w: self.bsdf.pdf(context, si, mi.Vector3f(*w)))
-        return rows(value, len(wi))
+        return rows(value, len(wi), 1)
 
     def sample(self, wo, u, mode):
         n = len(u)
@@ -86,11 +86,11 @@ class Plugin:
 
         drawn = self.each(wo, mode, u, draw)
         if SCALAR:
-            drawn = list(zip(*drawn))
+            drawn = list(zip(*drawn)) or [(), (), (), ()]
         else:
             dr.eval(drawn)  # one kernel, not one for each array
         wi, weight, pdf, kind = drawn
-        wi, weight, pdf = rows(wi, n), rows(weight, n), rows(pdf, n)[:, 0]
+        wi, weight, pdf = rows(wi, n, 3), rows(weight, n, 3), rows(pdf, n, 1)[:, 0]
         flags = kinds(np.asarray(kind, dtype=np.int64), wi, wo)
         return wi, weight, pdf, flags
 
@@ -108,12 +108,12 @@ class Plugin:
         return function(context, si, [mi.Float(column) for column in np.float32(table).T])
 
 
-def rows(values, n):
+def rows(values, n, width):
     """One row a direction, of Dr.Jit's arrays (one column a direction) or a list."""
     if isinstance(values, (list, tuple)):
-        return np.array([np.ravel(v) for v in values], dtype=np.float64).reshape(n, -1)
+        return np.array([np.ravel(v) for v in values], dtype=np.float64).reshape(n, width)
     array = np.array(values, dtype=np.float64)
-    return np.broadcast_to(array.reshape(-1, array.shape[-1]).T, (n, array.size // array.shape[-1]))
+    return np.broadcast_to(array.reshape(width, -1).T, (n, width))
 
 
 def kinds(kind, wi, wo):
