@@ -1,5 +1,6 @@
 //! Directions in the local shading frame.
 
+use super::Figure;
 use serde::{Deserialize, Serialize};
 
 /// A direction in the local shading frame: +z is the surface normal, +x the
@@ -7,8 +8,8 @@ use serde::{Deserialize, Serialize};
 /// unit length; gonio checks this of what a subject returns and never
 /// normalises it silently.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Serialize, Deserialize, schemars::JsonSchema)]
-#[serde(from = "[f64; 3]", into = "[f64; 3]")]
-#[schemars(with = "[f64; 3]")]
+#[serde(from = "[Figure; 3]", into = "[Figure; 3]")]
+#[schemars(with = "[Figure; 3]")]
 pub struct Direction {
     /// Along the tangent.
     pub x: f64,
@@ -129,6 +130,18 @@ impl Direction {
     #[inline]
     pub fn angle(self, other: Self) -> f64 {
         self.cross(other).length().atan2(self.dot(other))
+    }
+}
+
+impl From<[Figure; 3]> for Direction {
+    fn from([x, y, z]: [Figure; 3]) -> Self {
+        Self::new(x.0, y.0, z.0)
+    }
+}
+
+impl From<Direction> for [Figure; 3] {
+    fn from(d: Direction) -> Self {
+        [d.x, d.y, d.z].map(Figure)
     }
 }
 

@@ -9,6 +9,7 @@ mod claims;
 mod claims_patch;
 mod description;
 mod direction;
+mod figure;
 mod fresnel;
 mod normals;
 mod sample;
@@ -20,6 +21,7 @@ pub use claims::{Claims, Cosine, OffSupport, RandomNumbers, Transport, Transport
 pub use claims_patch::ClaimsPatch;
 pub use description::{ByConstruction, Description, Has, Precision, SubjectKind, Table};
 pub use direction::Direction;
+pub use figure::Figure;
 pub use fresnel::{FresnelFunction, Interface};
 pub use normals::{NormalDistribution, Normals};
 pub use sample::{Lobe, Sample, Samples};

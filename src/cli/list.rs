@@ -23,7 +23,13 @@ pub fn list(args: &ListArgs, registry: &Registry) -> Result<Exit, CliError> {
     let text = match &args.name {
         None if args.mutants => mutants(),
         None => subjects(registry),
-        Some(name) => parameters(registry.model(name)?.as_ref()),
+        Some(name) => match registry.models_of_plugin(name) {
+            Some(models) => {
+                let rows = models.into_iter().map(|(name, doc)| vec![name, doc]);
+                table(&["name", "what it is"], rows.collect())
+            }
+            None => parameters(registry.model(name)?.as_ref()),
+        },
     };
     emit(&text)?;
     Ok(Exit::Passed)

@@ -3,7 +3,7 @@
 use super::explanation::{Claim, DENSITY, VAGUE};
 use super::textbook::{EQUAL, Textbook};
 use super::view::{Seen, View};
-use crate::bsdf::{Direction, Samples};
+use crate::bsdf::{Direction, Precision, Samples};
 use crate::cause::Cause;
 use crate::evidence::CHANGE;
 use crate::models::fresnel;
@@ -182,6 +182,8 @@ fn unsound(view: &View, book: Option<&Textbook>) -> Vec<Claim> {
             .filter(|k| r.broken[*k])
             .all(|k| ((r.samples.wi[k] + s.wo).length() - 2.0).abs() < 1e-6)
     });
+    // Directions of this length are unsound in another way.
+    let rounding = if view.description.precision == Precision::F32 { 1e-5 } else { 1e-7 };
     let constant = lengths.iter().all(|l| (l - lengths[0]).abs() < 1e-6 * lengths[0]);
     if halfway && !constant {
         claims.push(
@@ -192,7 +194,7 @@ fn unsound(view: &View, book: Option<&Textbook>) -> Vec<Claim> {
             )
             .covers(UNSOUND),
         );
-    } else if constant && lengths[0].is_finite() && (lengths[0] - 1.0).abs() > 1e-7 && lengths[0] > 0.0 {
+    } else if constant && lengths[0].is_finite() && (lengths[0] - 1.0).abs() > rounding && lengths[0] > 0.0 {
         claims.push(
             Claim::new(
                 Cause::Numerics,

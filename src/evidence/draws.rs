@@ -1,9 +1,9 @@
 //! Draws from a subject's sampler, counted in the cells of a partition.
 
-use super::figure::Figure;
 use super::meter::{Halt, Meter};
 use super::setup::Setup;
 use super::tally::{Place, Tally};
+use crate::bsdf::Figure;
 use crate::bsdf::{Direction, Lobe, Precision, Samples};
 use crate::sphere::Partition;
 use serde::{Deserialize, Serialize};

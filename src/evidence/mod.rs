@@ -4,7 +4,6 @@
 mod draws;
 mod exact;
 mod facets;
-mod figure;
 mod fresnel;
 mod gathered;
 mod integrals;
@@ -19,10 +18,10 @@ mod slopes;
 mod tally;
 mod variations;
 
+pub use crate::bsdf::Figure;
 pub use draws::{BLOCK, DiscreteLobe, Draws, SERIAL, Sums};
 pub use exact::Repeats;
 pub use facets::{Estimate, Facets};
-pub use figure::Figure;
 pub use fresnel::{FresnelLaw, FresnelLaws};
 pub use gathered::{Company, Evidence, Gatherer, Measurement};
 pub use integrals::{Integrals, SMALLEST_PEAK, refracted};

@@ -69,6 +69,8 @@ enum ParameterDescription {
         #[serde(default)]
         doc: String,
         role: Option<ParameterRole>,
+        #[serde(default)]
+        idle: bool,
     },
     Choice {
         name: String,
@@ -76,6 +78,8 @@ enum ParameterDescription {
         default: Option<String>,
         #[serde(default)]
         doc: String,
+        #[serde(default)]
+        idle: bool,
     },
     File {
         name: String,
@@ -177,7 +181,7 @@ impl ModelDescription {
     pub fn declare(&self, mut model: Model) -> Model {
         for parameter in &self.parameters {
             model = match parameter {
-                ParameterDescription::Number { name, default, min, max, doc, role } => {
+                ParameterDescription::Number { name, default, min, max, doc, role, .. } => {
                     let model = model.number(name, *default, *min..=*max, doc);
                     match role {
                         Some(ParameterRole::Roughness) => model.role(Role::Roughness),
@@ -185,7 +189,7 @@ impl ModelDescription {
                         None => model,
                     }
                 }
-                ParameterDescription::Choice { name, options, default, doc } => {
+                ParameterDescription::Choice { name, options, default, doc, .. } => {
                     let mut options: Vec<&str> = options.iter().map(String::as_str).collect();
                     if let Some(first) = options.iter().position(|o| Some(*o) == default.as_deref()) {
                         options.swap(0, first);
@@ -194,6 +198,9 @@ impl ModelDescription {
                 }
                 ParameterDescription::File { name, doc } => model.file(name, doc),
             };
+            if parameter.is_idle() {
+                model = model.idle();
+            }
         }
         model
     }
@@ -224,6 +231,10 @@ impl ParameterDescription {
         }
     }
 
+    fn is_idle(&self) -> bool {
+        matches!(self, Self::Number { idle: true, .. } | Self::Choice { idle: true, .. })
+    }
+
     fn check(&self) -> Result<(), String> {
         match self {
             Self::Number { name, default, min, max, .. } => {
@@ -246,6 +257,11 @@ impl ParameterDescription {
 }
 
 impl Hello {
+    /// The names of the models, and what they are.
+    pub fn names(&self) -> Vec<(String, String)> {
+        self.models.iter().map(|m| (m.name.clone(), m.doc.clone())).collect()
+    }
+
     /// The model that `wanted` names; the only one where it names none.
     pub fn model(&self, file: &str, wanted: Option<&str>) -> Result<&ModelDescription, String> {
         let names: Vec<&str> = self.models.iter().map(|m| m.name.as_str()).collect();

@@ -42,11 +42,7 @@ impl Plugins {
             _ => (name, None),
         };
         let named = Named::of(file)?;
-        let opened = {
-            let mut all = self.opened.lock().unwrap_or_else(PoisonError::into_inner);
-            all.entry(file.into()).or_insert_with(|| self.open(file, &named)).clone()
-        };
-        let plugin = match opened {
+        let plugin = match self.opened(file, &named) {
             Ok(plugin) => plugin,
             Err(why) => return Some(Ok(broken(name, why))),
         };
@@ -64,6 +60,17 @@ impl Plugins {
             })
         });
         Some(Ok(declaring.declare(model)))
+    }
+
+    /// The models of the plugin `file` and what they are, where it has several.
+    pub fn models(&self, file: &str) -> Option<Vec<(String, String)>> {
+        let plugin = self.opened(file, &Named::of(file)?).ok()?;
+        Some(plugin.hello.names()).filter(|names| names.len() > 1)
+    }
+
+    fn opened(&self, file: &str, named: &Named) -> Opened {
+        let mut all = self.opened.lock().unwrap_or_else(PoisonError::into_inner);
+        all.entry(file.into()).or_insert_with(|| self.open(file, named)).clone()
     }
 
     fn open(&self, file: &str, named: &Named) -> Opened {

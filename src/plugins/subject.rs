@@ -127,6 +127,9 @@ impl Foreign {
         transport: Transport,
         out: &mut [f64],
     ) -> Result<(), SubjectError> {
+        if wi.is_empty() {
+            return Ok(());
+        }
         let fill =
             |input: &mut Vec<f64>| input.extend(wi.iter().flat_map(|d| self.conventions.direction(*d)));
         self.ask(function, wo, transport, wi.len(), fill, |_, answer| {
@@ -170,6 +173,9 @@ impl Subject for Foreign {
     ) -> Result<(), SubjectError> {
         let dimensions = self.description.dimensions;
         let rows = u.len() / dimensions.max(1);
+        if rows == 0 {
+            return Ok(());
+        }
         let fill = |input: &mut Vec<f64>| input.extend_from_slice(if dimensions == 0 { &[] } else { u });
         self.ask(Function::Sample, wo, transport, rows, fill, |call, answer| {
             let drawn = Drawn::of(call, answer);

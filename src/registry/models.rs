@@ -85,6 +85,15 @@ impl Registry {
         Self { plugins, ..self.clone() }
     }
 
+    /// The models of a plugin that has several, each as it is written and what it is.
+    pub fn models_of_plugin(&self, name: &str) -> Option<Vec<(String, String)>> {
+        if self.models.iter().any(|m| m.name() == name) {
+            return None;
+        }
+        let models = self.plugins.models(name)?;
+        Some(models.into_iter().map(|(model, doc)| (format!("{name}#{model}"), doc)).collect())
+    }
+
     /// All models that are listed.
     pub fn models(&self) -> impl Iterator<Item = &Model> {
         self.models.iter()

@@ -169,7 +169,8 @@ fn reference(
     mistakes: &mut Vec<Mistake>,
 ) -> Option<(String, Arc<dyn Subject>)> {
     let text = entry.reference.as_ref()?;
-    let found = text.get_ref().parse::<Spelling>().and_then(|spelling| registry.resolve(&spelling));
+    let spelled = registry.spelling_of_file(text.get_ref()).unwrap_or_else(|| text.get_ref().clone());
+    let found = spelled.parse::<Spelling>().and_then(|spelling| registry.resolve(&spelling));
     let found = found.map(|r| (r.spelling, r.subject));
     found.map_err(|e| mistakes.push(Mistake::of_registry(text.span(), &e))).ok()
 }

@@ -303,7 +303,10 @@ impl SuiteFile {
                 "label" => entry.label = self.read_label(reader, value),
                 "claims" => entry.claims = claims(reader, value),
                 "waive" => entry.waivers = waivers(reader, value),
-                "reference" => entry.reference = reader.text(key, value),
+                "reference" => {
+                    let text = reader.text(key, value);
+                    entry.reference = text.map(|t| Spanned::new(t.span(), self.subject_beside(t.get_ref())));
+                }
                 "theta" => entry.theta = reader.numbers(key, value, polar),
                 "phi" => entry.phi = reader.numbers(key, value, azimuth),
                 "cover" => entry.cover = cover(reader, value),
@@ -415,8 +418,26 @@ impl SuiteFile {
                 }
             }
         }
-        let words: Vec<String> = words.iter().map(|word| self.beside(word)).collect();
-        Some(Spanned::new(value.span(), shell_words::join(words)))
+        let mut words: Vec<String> = words.iter().map(|word| self.beside(word)).collect();
+        // The name of a model is no part of the command.
+        let last = words.last_mut()?;
+        let model = match last.rsplit_once('#') {
+            Some((file, model)) if Path::new(file).is_file() => {
+                let model = format!("#{model}");
+                *last = last[..last.len() - model.len()].into();
+                model
+            }
+            _ => String::new(),
+        };
+        Some(Spanned::new(value.span(), shell_words::join(words) + &model))
+    }
+
+    /// A subject in a file beside the suite; others as they are written.
+    fn subject_beside(&self, text: &str) -> String {
+        match text.split_once(':') {
+            Some((file, parameters)) => format!("{}:{parameters}", self.beside(file)),
+            None => self.beside(text),
+        }
     }
 
     /// The path of a file beside the suite; other words as they are.
