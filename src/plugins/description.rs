@@ -118,7 +118,7 @@ pub fn hello(text: &str) -> Result<Hello, Fault> {
 fn read<T: serde::de::DeserializeOwned>(text: &str) -> Result<T, String> {
     serde_json::from_str(text).map_err(|e| {
         let line = text.lines().nth(e.line().saturating_sub(1)).unwrap_or("");
-        let start = line.char_indices().map(|(at, _)| at).filter(|at| at + 40 <= e.column()).last();
+        let start = (0..=e.column().saturating_sub(40)).rev().find(|at| line.is_char_boundary(*at));
         let near: String = line[start.unwrap_or(0)..].chars().take(60).collect();
         format!("{e}, near `{near}`")
     })

@@ -55,10 +55,14 @@ impl Sandbox {
 
     /// A suite of `subject` and a model of gonio's own.
     pub fn suite(&self, subject: &str, options: &[&str]) -> Run {
+        let (name, deed) = match subject.rsplit_once(":deed=") {
+            Some((name, deed)) => (name, format!("deed = \"{deed}\"\n")),
+            None => (subject, String::new()),
+        };
         let text = format!(
             "[suite]\ntheta = [30, 60]\nphi = 17\nsamples = \"2^14\"\ndetect = 1.0\ncall_limit = 1\n\
              checks = [\"energy\", \"weight\", \"support\"]\n\
-             [[subject]]\nuse = '''{subject}'''\n[[subject]]\nuse = \"lambert\"\n"
+             [[subject]]\nuse = '''{name}'''\n{deed}[[subject]]\nuse = \"lambert\"\n"
         );
         let path = self.folder.path().join("suite.toml");
         std::fs::write(&path, text).unwrap();
@@ -70,8 +74,15 @@ impl Sandbox {
         command.stdout(Stdio::null()).stderr(Stdio::null()).spawn().unwrap()
     }
 
-    /// Command lines of processes that descend from this sandbox and still run.
+    /// Command lines of processes that descend from this sandbox and still run a moment
+    /// after gonio has ended.
     pub fn left(&self) -> Vec<String> {
+        within(5.0, || self.running().is_empty());
+        self.running()
+    }
+
+    /// Command lines of processes that descend from this sandbox.
+    pub fn running(&self) -> Vec<String> {
         let mut left = Vec::new();
         for entry in std::fs::read_dir("/proc").unwrap().flatten() {
             let environment = std::fs::read(entry.path().join("environ")).unwrap_or_default();

@@ -26,7 +26,7 @@ pub(super) fn ask<'a>(request: &Request<'a>) -> (Vec<u8>, &'a [u8]) {
 fn header(read: &[u8]) -> Result<Option<(&str, usize)>, String> {
     let Some(length) = read.first_chunk::<4>() else { return Ok(None) };
     let length = u32::from_le_bytes(*length) as usize;
-    if length > LONGEST || length < 2 {
+    if !(2..=LONGEST).contains(&length) {
         return Err(garbage(read));
     }
     let Some(header) = read.get(4..4 + length) else {
@@ -42,8 +42,10 @@ fn header(read: &[u8]) -> Result<Option<(&str, usize)>, String> {
 
 /// What bytes say that are no frame.
 fn garbage(read: &[u8]) -> String {
-    let text = |b: &u8| b.is_ascii_graphic() || b.is_ascii_whitespace();
-    if read[..read.len().min(16)].iter().all(text) {
+    let begin = String::from_utf8_lossy(&read[..read.len().min(16)]);
+    // A character may be cut at the end.
+    let begin = begin.trim_end_matches('\u{fffd}');
+    if !begin.is_empty() && begin.chars().all(|c| c != '\u{fffd}' && (!c.is_control() || c.is_whitespace())) {
         format!(
             "it wrote `{}` to standard output, where its answers go; it should print to standard error",
             shown(read)

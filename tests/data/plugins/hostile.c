@@ -17,7 +17,7 @@ const char *gonio_describe(void *handle) {
     if (handle) return NULL;
     return "{\"protocol\":1,\"models\":[{\"name\":\"hostile\",\"dimensions\":2,\"parameters\":[{\"name\":\"deed\","
            "\"type\":\"choice\",\"options\":[\"none\",\"segfault\",\"loop\",\"allocate\",\"print\",\"exit\",\"fork\","
-           "\"daemon\",\"close\",\"few\",\"nan\",\"abort\",\"stack\",\"refuse\",\"divide\"]}]}]}";
+           "\"daemon\",\"close\",\"few\",\"nan\",\"abort\",\"stack\",\"refuse\",\"divide\"],\"idle\":true}]}]}";
 }
 
 void *gonio_create(const char *model, const char *parameters) {
