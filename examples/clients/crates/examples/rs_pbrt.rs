@@ -1,0 +1,268 @@
+//! What docs/field-notes-crates.md says of rs_pbrt 0.9.12, without gonio:
+//! formulas, midpoint sums and counted draws.
+//!
+//! ```text
+//! cargo run --release --example rs_pbrt            # all of it
+//! cargo run --release --example rs_pbrt -- hair    # one finding
+//! ```
+
+mod common;
+
+use common::{Random, Vector, at, integral};
+use rs_pbrt::core::geometry::{Normal3f, Point2f, Vector3f};
+use rs_pbrt::core::material::TransportMode;
+use rs_pbrt::core::microfacet::{
+    BeckmannDistribution, MicrofacetDistribution, TrowbridgeReitzDistribution,
+};
+use rs_pbrt::core::pbrt::Spectrum;
+use rs_pbrt::core::reflection::{
+    Bsdf, Bxdf, Fresnel, FresnelConductor, FresnelDielectric, FresnelNoOp, FresnelSpecular,
+    LambertianReflection, MicrofacetReflection, MicrofacetTransmission, SpecularReflection,
+    SpecularTransmission, fr_dielectric,
+};
+use rs_pbrt::materials::disney::DisneyClearCoat;
+use rs_pbrt::materials::hair::HairBSDF;
+use std::f64::consts::PI;
+
+const ALL: u8 = 31;
+
+fn v(w: Vector) -> Vector3f {
+    Vector3f { x: w[0] as f32, y: w[1] as f32, z: w[2] as f32 }
+}
+
+fn dot(a: Vector, b: Vector) -> f64 {
+    a[0] * b[0] + a[1] * b[1] + a[2] * b[2]
+}
+
+fn white(x: f32) -> Spectrum {
+    Spectrum::new(x)
+}
+
+fn u(random: &mut Random) -> Point2f {
+    let mut below_one = || (random.next() as f32).min(0.999_999_94);
+    Point2f { x: below_one(), y: below_one() }
+}
+
+/// The lobes in a frame that changes nothing.
+fn sum(bxdfs: Vec<Bxdf>) -> Bsdf {
+    let up = Normal3f { x: 0.0, y: 0.0, z: 1.0 };
+    let (ss, ts) = (Vector3f { x: 1.0, y: 0.0, z: 0.0 }, Vector3f { x: 0.0, y: 1.0, z: 0.0 });
+    Bsdf { eta: 1.0, ns: up, ng: up, ss, ts, bxdfs }
+}
+
+/// Direction, f, density and flags of a draw, if there is one.
+fn draw(bsdf: &Bsdf, wo: Vector, random: &mut Random) -> Option<(Vector, f64, f64, u8)> {
+    let (mut wi, mut pdf, mut flags) = (Vector3f::default(), 0.0, ALL);
+    let f = bsdf.sample_f(&v(wo), &mut wi, &u(random), &mut pdf, ALL, &mut flags);
+    (pdf != 0.0).then(|| ([wi.x.into(), wi.y.into(), wi.z.into()], f.c[0].into(), pdf.into(), flags))
+}
+
+fn pdf(bsdf: &Bsdf, wo: Vector, wi: Vector) -> f64 {
+    bsdf.pdf(&v(wo), &v(wi), ALL).into()
+}
+
+const DRAWS: usize = 1_000_000;
+
+/// The share of draws that `counts`.
+fn share(bsdf: &Bsdf, wo: Vector, counts: impl Fn(Vector, u8) -> bool) -> f64 {
+    let mut random = Random(1);
+    let hits = (0..DRAWS).filter(|_| draw(bsdf, wo, &mut random).is_some_and(|(wi, .., k)| counts(wi, k)));
+    hits.count() as f64 / DRAWS as f64
+}
+
+fn facets(alpha: f32, visible: bool) -> MicrofacetDistribution {
+    MicrofacetDistribution::TrowbridgeReitz(TrowbridgeReitzDistribution::new(alpha, alpha, visible))
+}
+
+/// materials/disney.rs:619: gtr1 divides by log10(α²) where ln(α²) belongs.
+fn clearcoat() {
+    println!("The coat's ∫pdf over its share of valid draws; ln 10 = {:.4}", 10f64.ln());
+    for gloss in [0.1, 0.03] {
+        let bsdf = sum(vec![Bxdf::DisClearCoat(DisneyClearCoat::new(1.0, gloss, None))]);
+        for theta in [0.0, 30.0, 60.0] {
+            let wo = at(theta, 17.0);
+            let z = integral(0.0, 90.0, 1500, |wi| pdf(&bsdf, wo, wi));
+            let s = share(&bsdf, wo, |_, _| true);
+            println!("  α = {gloss}, θo = {theta}°: ∫pdf = {z:.4}, drawn {s:.4}, ratio {:.4}", z / s);
+        }
+    }
+}
+
+/// materials/hair.rs:459: the loop over lobes leaves p at 2 where pbrt's leaves
+/// it at 3, so that the last lobe is never drawn.
+fn hair() {
+    let (eta, h) = (1.55, 0.3);
+    println!("Azimuths of draws around the fibre against its pdf, 36 bins; A₃ is the last lobe's share");
+    for sigma in [0.0, 0.3, 3.0] {
+        let hair = HairBSDF::new(h, eta, white(sigma), 0.3, 0.3, 2.0, None);
+        let bsdf = sum(vec![Bxdf::Hair(hair)]);
+        for theta in [0.0, 60.0] {
+            let wo = at(theta, 17.0);
+            let last = hair.compute_ap_pdf((1.0 - wo[0] * wo[0]).sqrt() as f32)[3];
+            let bin = |w: Vector| ((w[2].atan2(w[1]) / (2.0 * PI) + 0.5) * 36.0).min(35.0) as usize;
+            let (mut drawn, mut told) = ([0.0; 36], [0.0; 36]);
+            let mut random = Random(2);
+            for _ in 0..DRAWS {
+                if let Some((wi, ..)) = draw(&bsdf, wo, &mut random) {
+                    drawn[bin(wi)] += 1.0 / DRAWS as f64;
+                }
+            }
+            // Along the fibre t = sin θ and around it φ: dω = dt dφ.
+            let (n, m) = (400, 360);
+            for j in 0..n {
+                let t = -1.0 + 2.0 * (j as f64 + 0.5) / n as f64;
+                for k in 0..m {
+                    let phi = -PI + 2.0 * PI * (k as f64 + 0.5) / m as f64;
+                    let c = (1.0 - t * t).sqrt();
+                    let wi = [t, c * phi.cos(), c * phi.sin()];
+                    told[bin(wi)] += pdf(&bsdf, wo, wi) * 2.0 / n as f64 * 2.0 * PI / m as f64;
+                }
+            }
+            let distance: f64 = drawn.iter().zip(told).map(|(a, b)| (a - b).abs()).sum::<f64>() / 2.0;
+            let z: f64 = told.iter().sum();
+            println!("  σ = {sigma}, θo = {theta}°: ∫pdf = {z:.4}, total variation {distance:.4}, A₃ = {last:.4}");
+        }
+    }
+}
+
+/// core/reflection.rs:1140: F is asked with wi·wh, which is positive on both
+/// sides, so that inside counts as outside.
+fn inside() {
+    let eta = 1.5;
+    let fresnel = Fresnel::Dielectric(FresnelDielectric { eta_i: 1.0, eta_t: eta });
+    println!("What rough glass (α = 0.1, η = 1.5) sends back inside, of light that arrives there");
+    let lobe = MicrofacetReflection::new(white(1.0), facets(0.1, true), fresnel, None);
+    let none = Fresnel::NoOp(FresnelNoOp {});
+    let perfect = MicrofacetReflection::new(white(1.0), facets(0.1, true), none, None);
+    for theta in [120.0, 130.0, 150.0] {
+        let wo = at(theta, 17.0);
+        let of = |lobe: &MicrofacetReflection| {
+            integral(90.0, 180.0, 1000, |wi| f64::from(lobe.f(&v(wo), &v(wi)).c[0]) * wi[2].abs())
+        };
+        let f = |cos: f64| fr_dielectric(cos as f32, 1.0, eta);
+        println!(
+            "  θo = {theta}°: {:.4} (F = 1: {:.4}); F from inside {:.4}, from outside {:.4}",
+            of(&lobe),
+            of(&perfect),
+            f(wo[2]),
+            f(-wo[2])
+        );
+    }
+}
+
+/// core/reflection.rs:1375: pdf() is positive for facets that face away from
+/// wo, and the sampler refracts at facets that wo cannot see.
+fn transmission() {
+    let eta = 1.5;
+    println!("MicrofacetTransmission, η = 1.5: ∫pdf, share of draws, and ∫pdf where wo·wh < 0 (wh up)");
+    for (alpha, visible) in [(0.1, true), (0.5, true), (1.0, true), (0.1, false), (0.5, false)] {
+        let lobe = MicrofacetTransmission::new(
+            white(1.0),
+            facets(alpha, visible),
+            1.0,
+            eta,
+            TransportMode::Radiance,
+            None,
+        );
+        let bsdf = sum(vec![Bxdf::MicrofacetTrans(lobe)]);
+        for theta in [30.0, 80.0, 100.0, 150.0] {
+            let wo = at(theta, 17.0);
+            let (from, to) = if theta < 90.0 { (90.0, 180.0) } else { (0.0, 90.0) };
+            let ratio = f64::from(if theta < 90.0 { eta } else { 1.0 / eta });
+            let away = |wi: Vector| {
+                let wh = [0, 1, 2].map(|k| wo[k] + ratio * wi[k]);
+                dot(wo, wh) * wh[2] * wo[2] < 0.0
+            };
+            let z = integral(from, to, 1000, |wi| pdf(&bsdf, wo, wi));
+            let phantom = integral(from, to, 1000, |wi| if away(wi) { pdf(&bsdf, wo, wi) } else { 0.0 });
+            let s = share(&bsdf, wo, |_, _| true);
+            let astray = share(&bsdf, wo, |wi, _| away(wi));
+            let kind = if visible { "visible" } else { "all" };
+            println!(
+                "  α = {alpha} ({kind}), θo = {theta}°: ∫pdf {z:.4}, drawn {s:.4}; facing away: ∫pdf {phantom:.4}, drawn {astray:.4}"
+            );
+        }
+    }
+}
+
+/// core/reflection.rs:885 and 982: a specular lobe has the density cos θ/π.
+fn specular() {
+    println!("pdf() at a direction that a specular lobe does not go to; pbrt returns 0");
+    let (wo, wi) = (at(30.0, 17.0), at(50.0, 200.0));
+    let glass = FresnelSpecular::new(white(1.0), white(1.0), 1.0, 1.5, TransportMode::Radiance, None);
+    let through = SpecularTransmission::new(white(1.0), 1.0, 1.5, TransportMode::Radiance, None);
+    let mirror = SpecularReflection::new(white(1.0), Fresnel::NoOp(FresnelNoOp {}), None);
+    for (name, lobe) in [
+        ("FresnelSpecular", Bxdf::FresnelSpec(glass)),
+        ("SpecularTransmission", Bxdf::SpecTrans(through)),
+        ("SpecularReflection", Bxdf::SpecRefl(mirror)),
+    ] {
+        println!("  {name}: {:.4} (cos θi/π = {:.4})", pdf(&sum(vec![lobe]), wo, wi), wi[2] / PI);
+    }
+    let matte = Bxdf::LambertianRefl(LambertianReflection::new(white(0.5), None));
+    let bsdf = sum(vec![Bxdf::SpecTrans(through), matte]);
+    let z = integral(0.0, 90.0, 400, |wi| pdf(&bsdf, wo, wi));
+    let diffuse = share(&bsdf, wo, |_, flags| flags & 16 == 0);
+    // What a renderer makes of it: the mean of f cos/pdf over diffuse draws.
+    let mut random = Random(3);
+    let draws = (0..DRAWS).filter_map(|_| draw(&bsdf, wo, &mut random));
+    let weights: f64 = draws.filter(|d| d.3 & 16 == 0).map(|(wi, f, p, _)| f * wi[2] / p).sum();
+    println!("Beside a matte lobe of albedo 0.5, as UberMaterial with opacity puts it:");
+    println!("  ∫pdf = {z:.4}, drawn {diffuse:.4}, mean weight of the matte lobe {:.4}", weights / DRAWS as f64);
+}
+
+/// core/reflection.rs: sample_f() of a lobe multiplies by the scale of f() again.
+fn scale() {
+    println!("A LambertianReflection scaled by 0.3: f() against the value of sample_f()");
+    let lobe = LambertianReflection::new(white(0.8), Some(white(0.3)));
+    let (wo, mut wi, mut pdf, mut kind) = (v(at(30.0, 17.0)), Vector3f::default(), 0.0, 0);
+    let sampled = lobe.sample_f(&wo, &mut wi, &Point2f { x: 0.3, y: 0.4 }, &mut pdf, &mut kind);
+    println!("  f = {:.5}, sample_f = {:.5}", lobe.f(&wo, &wi).c[0], sampled.c[0]);
+}
+
+/// core/reflection.rs:703: FresnelConductor does not take |cos θ|.
+fn conductor() {
+    println!("FresnelConductor (about copper, red) at cos θ and −cos θ");
+    let metal = FresnelConductor { eta_i: white(1.0), eta_t: white(0.2), k: white(3.91) };
+    for theta in [0f32, 45.0, 80.0] {
+        let cos = theta.to_radians().cos();
+        println!("  {theta}°: {:.4}, {:.4}", metal.evaluate(cos).c[0], metal.evaluate(-cos).c[0]);
+    }
+}
+
+/// core/microfacet.rs:137: Λ of Beckmann is the rational fit of Walter et al.
+fn beckmann() {
+    println!("Beckmann, all visible normals: ∫ G1 max(0, wo·m) D/cos θo dm, 1 if G1 were exact");
+    for alpha in [0.1, 0.5, 1.0] {
+        for theta in [30.0, 60.0, 80.0, 89.0] {
+            let d = BeckmannDistribution::new(alpha, alpha, true);
+            let wo = at(theta, 17.0);
+            let z = integral(0.0, 90.0, 1500, |m| {
+                if dot(wo, m) > 0.0 { f64::from(d.pdf(&v(wo), &v(m))) } else { 0.0 }
+            });
+            println!("  α = {alpha}, θo = {theta}°: {z:.5}");
+        }
+    }
+}
+
+type Finding = (&'static str, fn());
+
+fn main() {
+    let findings: [Finding; 8] = [
+        ("clearcoat", clearcoat),
+        ("hair", hair),
+        ("inside", inside),
+        ("transmission", transmission),
+        ("specular", specular),
+        ("scale", scale),
+        ("conductor", conductor),
+        ("beckmann", beckmann),
+    ];
+    let wanted = std::env::args().nth(1);
+    for (name, show) in findings {
+        if wanted.as_deref().is_none_or(|w| w == name) {
+            println!("[{name}]");
+            show();
+        }
+    }
+}
