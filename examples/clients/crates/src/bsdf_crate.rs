@@ -126,10 +126,11 @@ fn with_reading(model: Model) -> Model {
 }
 
 fn with_ggx(model: Model) -> Model {
-    model
-        .number("roughness", 0.5, 0.0..=1.0, "square root of α")
-        .role(Role::Roughness)
-        .number("anisotropic", 0.0, 0.0..=1.0, "how far the lobe is stretched")
+    with_stretch(model.number("roughness", 0.5, 0.0..=1.0, "square root of α").role(Role::Roughness))
+}
+
+fn with_stretch(model: Model) -> Model {
+    model.number("anisotropic", 0.0, 0.0..=1.0, "how far the lobe is stretched")
 }
 
 fn ggx(p: &Parameters) -> GGX {
@@ -227,7 +228,7 @@ fn disney(p: &Parameters) -> Client {
 fn disney_model() -> Model {
     let model = Model::new("bsdf-disney", "crate bsdf: Disney", |p| Ok(disney(p)))
         .number("base_color", 0.8, 0.0..=1.0, "red of the base colour; green 3/4, blue 1/2 of it");
-    let model = with_ggx(model)
+    let model = with_stretch(model.number("roughness", 0.5, 0.0..=1.0, "square root of α of the specular lobe"))
         .number("rotation", 0.0, 0.0..=1.0, "turns the stretched lobe, in units of 180°")
         .only_if("anisotropic > 0", |p| p.number("anisotropic") > 0.0);
     let model = [

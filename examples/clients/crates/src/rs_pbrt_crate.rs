@@ -54,8 +54,9 @@ fn direction(w: Vector3f) -> Direction {
     Direction { x: w.x.into(), y: w.y.into(), z: w.z.into() }
 }
 
-fn spectrum(f: Rgb) -> Spectrum {
-    Spectrum::from_fn(3, |k| f.c[k].into())
+/// Its colours, or the first channel where all are alike.
+fn spectrum(f: Rgb, channels: usize) -> Spectrum {
+    Spectrum::from_fn(channels, |k| f.c[k].into())
 }
 
 /// Two numbers in [0, 1), as its samplers give them.
@@ -74,6 +75,16 @@ struct Client {
 }
 
 impl Client {
+    /// Of a model without colours.
+    fn grey(mut self) -> Self {
+        self.description.channels = vec!["value".into()];
+        self
+    }
+
+    fn channels(&self) -> usize {
+        self.description.channels.len()
+    }
+
     fn sum(&self, transport: Transport) -> &Sum {
         match transport {
             Transport::Radiance => &self.radiance,
@@ -91,12 +102,13 @@ impl Bsdf for Client {
         let sum = self.sum(transport);
         let (o, i) = (vector(wo), vector(wi));
         if !self.alone {
-            return spectrum(sum.f(&o, &i, ALL));
+            return spectrum(sum.f(&o, &i, ALL), self.channels());
         }
         // A lobe leaves the choice of the side to its caller.
         let side = if o.z * i.z > 0.0 { BxdfType::BsdfReflection } else { BxdfType::BsdfTransmission };
         let lobe = &sum.bxdfs[0];
-        spectrum(if lobe.get_type() & side as u8 != 0 { lobe.f(&o, &i) } else { Rgb::new(0.0) })
+        let f = if lobe.get_type() & side as u8 != 0 { lobe.f(&o, &i) } else { Rgb::new(0.0) };
+        spectrum(f, self.channels())
     }
 
     fn pdf(&self, wo: Direction, wi: Direction, transport: Transport) -> f64 {
@@ -128,7 +140,8 @@ impl Bsdf for Client {
         let sides = Lobe::REFLECTION.0 | Lobe::TRANSMISSION.0;
         let side = if wo.same_side(wi) { Lobe::REFLECTION } else { Lobe::TRANSMISSION };
         let lobe = if kind & sides == sides { kind & !sides | side.0 } else { kind };
-        Some(Sample { wi, weight: spectrum(f) * (cos / pdf), pdf, lobe: Lobe(lobe) })
+        let weight = spectrum(f, self.channels()) * (cos / pdf);
+        Some(Sample { wi, weight, pdf, lobe: Lobe(lobe) })
     }
 }
 
@@ -194,6 +207,7 @@ fn material(
         (surface.dpdu, surface.dpdv) = (plane.ss, plane.ts);
         (surface.shading.dpdu, surface.shading.dpdv) = (plane.ss, plane.ts);
         (surface.common.n, surface.shading.n) = (plane.ng, plane.ns);
+        surface.common.wo = Vector3f { x: 0.0, y: 0.0, z: 1.0 };
         material.compute_scattering_functions(&mut surface, mode, true, None, None);
         surface.bsdf.ok_or("no BSDF was made")
     };
@@ -234,6 +248,10 @@ fn with_alpha(model: Model) -> Model {
         .role(Role::Roughness)
         .number("alpha_y", 0.0, 0.0..=1.0, "roughness along the bitangent; 0: as alpha")
         .role(Role::Roughness)
+}
+
+fn with_facets(model: Model) -> Model {
+    model
         .choice("distribution", &["trowbridge-reitz", "beckmann", "disney"], "of facet normals")
         .choice("sampling", &["visible-normals", "normals"], "which normals are drawn")
         .only_when("distribution", &["trowbridge-reitz", "beckmann"])
@@ -302,7 +320,8 @@ fn smooth_lobes() -> Vec<Model> {
         let make = |_, scale| Bxdf::LambertianRefl(LambertianReflection::new(white(r), scale));
         Ok(lobe(p, make, "pbrt-lambert", |c| {
             (c.isotropic, c.two_sided, c.lossless) = (true, true, r == 1.0);
-        }))
+        })
+        .grey())
     })
     .number("reflectance", 0.8, 0.0..=1.0, "albedo");
 
@@ -312,7 +331,8 @@ fn smooth_lobes() -> Vec<Model> {
         Ok(lobe(p, make, "pbrt-lambert-transmission", |c| {
             (c.isotropic, c.two_sided, c.lossless) = (true, true, t == 1.0);
             (c.reflective, c.transmissive) = (false, true);
-        }))
+        })
+        .grey())
     })
     .number("transmittance", 0.8, 0.0..=1.0, "albedo");
 
@@ -323,7 +343,8 @@ fn smooth_lobes() -> Vec<Model> {
             (c.isotropic, c.two_sided) = (true, true);
             // The A, B form returns up to 1.014 of what arrives at reflectance 1.
             c.energy_conserving = r <= 0.98;
-        }))
+        })
+        .grey())
     })
     .number("reflectance", 0.8, 0.0..=1.0, "ρ")
     .number("sigma", 20.0, 0.0..=90.0, "spread of facet slopes, degrees");
@@ -346,7 +367,8 @@ fn smooth_lobes() -> Vec<Model> {
         Ok(lobe(p, make, "pbrt-specular-transmission", |c| {
             (c.isotropic, c.reflective) = (true, false);
             refracts(c, eta);
-        }))
+        })
+        .grey())
     });
 
     let glass = Model::new("pbrt-fresnel-specular", "rs_pbrt: FresnelSpecular", |p| {
@@ -357,7 +379,8 @@ fn smooth_lobes() -> Vec<Model> {
         Ok(lobe(p, make, "pbrt-fresnel-specular", |c| {
             (c.isotropic, c.lossless) = (true, true);
             refracts(c, eta);
-        }))
+        })
+        .grey())
     });
 
     let models = [lambert, through, oren_nayar, with_fresnel(mirror), with_eta(refraction), with_eta(glass)];
@@ -385,7 +408,8 @@ fn facet_lobes() -> Vec<Model> {
             c.isotropic = is_isotropic(p);
             c.reflective = false;
             refracts(c, eta);
-        }))
+        })
+        .grey())
     });
 
     let blend = Model::new("pbrt-fresnel-blend", "rs_pbrt: FresnelBlend", |p| {
@@ -396,18 +420,20 @@ fn facet_lobes() -> Vec<Model> {
         Ok(lobe(p, make, "pbrt-fresnel-blend", |c| {
             c.isotropic = is_isotropic(p);
             c.two_sided = true;
-        }))
+        })
+        .grey())
     })
     .number("rd", 0.5, 0.0..=1.0, "reflectance of the base")
-    .number("rs", 0.05, 0.0..=1.0, "reflectance of the coat at the normal");
+    .number("rs", 0.05, 0.0..=1.0, "reflectance of the coat at the normal")
+    .number("alpha", 0.3, 0.001..=1.0, "roughness along the tangent")
+    .number("alpha_y", 0.0, 0.0..=1.0, "roughness along the bitangent; 0: as alpha");
 
-    let models =
-        [with_fresnel(with_alpha(reflection)), with_eta(with_alpha(transmission)), with_alpha(blend)];
-    models.into_iter().map(lobe_model).collect()
+    let models = [with_fresnel(with_alpha(reflection)), with_eta(with_alpha(transmission)), blend];
+    models.into_iter().map(with_facets).map(lobe_model).collect()
 }
 
-/// A table of f·|cos θi| = ρ/π cos²θi |cos θo| (1 + g cos φ), which reflects
-/// only: Minnaert's law at k = 2, with a lean.
+/// A table of f·|cos θi| = ρ/π cos²θi |cos θo| (1 + g sin θi sin θo cos φ), which
+/// reflects only: Minnaert's law at k = 2, with a lean.
 fn table(rho: f64, g: f64) -> FourierBSDFTable {
     const NODES: usize = 81;
     let node = |k: usize| -1.0 + 2.0 * k as f64 / (NODES - 1) as f64;
@@ -431,7 +457,8 @@ fn table(rho: f64, g: f64) -> FourierBSDFTable {
             table.m.push(if reflects { 2 } else { 0 });
             table.a0.push(a0 as f32);
             if reflects {
-                table.a.extend([a0 as f32, (g * a0) as f32]);
+                let sines = ((1.0 - mu_i * mu_i) * (1.0 - mu_o * mu_o)).sqrt();
+                table.a.extend([a0 as f32, (g * sines * a0) as f32]);
             }
         }
         integrate_catmull_rom(NODES as i32, &table.mu, o * NODES, &table.a0, &mut table.cdf);
@@ -451,7 +478,7 @@ fn special_lobes() -> Vec<Model> {
             }
             _ => Bxdf::DisDiff(DisneyDiffuse::new(white(0.8), scale)),
         };
-        Ok(lobe(p, make, "pbrt-disney-lobe", |c| (c.isotropic, c.two_sided) = (true, true)))
+        Ok(lobe(p, make, "pbrt-disney-lobe", |c| (c.isotropic, c.two_sided) = (true, true)).grey())
     })
     .choice("lobe", &["diffuse", "fake-ss", "retro", "sheen", "clearcoat"], "which of them")
     .number("roughness", 0.5, 0.0..=1.0, "of the base")
@@ -485,7 +512,7 @@ fn special_lobes() -> Vec<Model> {
             (c.isotropic, c.transmissive, c.reciprocal) = (true, true, false);
         });
         client.description = client.description.table(Table::default());
-        Ok(client)
+        Ok(client.grey())
     })
     .number("reflectance", 0.8, 0.0..=1.0, "ρ")
     .number("lean", 0.5, 0.0..=1.0, "g");
@@ -512,6 +539,7 @@ fn materials() -> Vec<Model> {
             (c.isotropic, c.lossless) = (true, alpha == 0.0);
             refracts(c, eta);
         })
+        .map(Client::grey)
     });
     let plastic = Model::new("pbrt-plastic", "rs_pbrt: PlasticMaterial", |p| {
         let mut scene = scene(
@@ -665,18 +693,14 @@ impl FresnelFunction for Reflectance {
         })
     }
     fn reflectance(&self, cos: f64) -> Spectrum {
-        spectrum(self.fresnel.evaluate(cos as f32))
+        spectrum(self.fresnel.evaluate(cos as f32), 3)
     }
 }
 
 fn parts() -> Vec<Model> {
-    let normals = Model::distribution("pbrt-normals", "rs_pbrt: its distributions of normals", |p| {
+    let normals = with_alpha(Model::distribution("pbrt-normals", "rs_pbrt: its distributions of normals", |p| {
         Ok(Normals { all: facets(p, false), visible: facets(p, true), is_isotropic: is_isotropic(p) })
-    })
-    .number("alpha", 0.3, 0.001..=1.0, "roughness along the tangent")
-    .role(Role::Roughness)
-    .number("alpha_y", 0.0, 0.0..=1.0, "roughness along the bitangent; 0: as alpha")
-    .role(Role::Roughness)
+    }))
     .choice("distribution", &["trowbridge-reitz", "beckmann"], "of facet normals");
 
     let fresnel = with_fresnel(Model::fresnel("pbrt-fresnel", "rs_pbrt: its Fresnel functions", |p| {
