@@ -60,7 +60,7 @@ fn emissive() {
     }
 }
 
-/// ggx.rs:81: G1 = 0 over cos θ = 0 at the horizon.
+/// utils.rs:138 and ggx.rs:101: G1 = 0 over cos θ = 0 at the horizon.
 fn horizon() {
     println!("pdf and value at wo ⟂ n");
     let (wo, wi) = (Vec3d::new(0.6, 0.8, 0.0), v(at(40.0, 60.0)));
@@ -78,7 +78,7 @@ fn horizon() {
     }
 }
 
-/// rough_glass.rs:131: `radiance_correction` takes (η_o/η_i)² out again.
+/// rough_glass.rs:129: `radiance_correction` takes (η_o/η_i)² out again.
 fn eta() {
     println!("RoughGlass, α = 0.0025, η = 1.5: Σ f cos/pdf over transmitted draws, of radiance and as it is");
     let glass = RoughGlass { ggx: GGX { alpha_x: 0.0025, alpha_y: 0.0025 }, ior: 1.5 };
@@ -96,6 +96,32 @@ fn eta() {
         let scale: f64 = if theta < 90.0 { 1.0 / 1.5 } else { 1.5 };
         println!("  θo = {theta}°: {sum:.4}; 1 − F = {count:.4}, (η_o/η_i)² (1 − F) = {:.4}", count * scale * scale);
     }
+}
+
+/// mix.rs:58: `draw / factor` at draw = factor = 0.
+fn mix() {
+    let lambert = Lambert { kd: RgbF::ONE };
+    let mixed = Mix { b1: lambert, b2: RoughGlass { ggx: ROUGH, ior: 1.5 }, factor: 0.0 };
+    println!("Mix of factor 0 at u₂ = 0, where its second part is drawn with u₂ = 0/0");
+    for theta in [30.0, 120.0] {
+        let told = outcome(|| {
+            let s = mixed.sample_incoming(v(at(theta, 17.0)), Vec3d::new(0.3, 0.4, 0.0));
+            format!("wi = {:.4}, pdf = {:.4}", s.omega_i, s.pdf)
+        });
+        println!("  θo = {theta}°: {told}");
+    }
+}
+
+/// utils.rs:66: 0.2162 for 0.2126.
+fn luminance() {
+    println!("The weights of luminance() add up to {:.4}", 0.2162 + 0.7152 + 0.0722);
+    println!("  so that sheen of a white base, all tinted, is {:.4} of what it is untinted", 1.0 / 1.0036);
+    let (wo, wi) = (v(at(80.0, 17.0)), v(at(80.0, 190.0)));
+    let of = |sheen, sheen_tint| {
+        let material = Disney { base_color: RgbF::ONE, specular: 0.0, sheen, sheen_tint, ..Disney::default() };
+        material.evaluate(wo, wi).x
+    };
+    println!("  found {:.4}", (of(1.0, 1.0) - of(0.0, 0.0)) / (of(1.0, 0.0) - of(0.0, 0.0)));
 }
 
 /// disney.rs:165: the base is not reduced by what lies over it.
@@ -124,8 +150,14 @@ fn energy() {
 type Finding = (&'static str, fn());
 
 fn main() {
-    let findings: [Finding; 4] =
-        [("emissive", emissive), ("horizon", horizon), ("eta", eta), ("energy", energy)];
+    let findings: [Finding; 6] = [
+        ("emissive", emissive),
+        ("horizon", horizon),
+        ("eta", eta),
+        ("mix", mix),
+        ("luminance", luminance),
+        ("energy", energy),
+    ];
     let wanted = std::env::args().nth(1);
     for (name, show) in findings {
         if wanted.as_deref().is_none_or(|w| w == name) {

@@ -21,7 +21,7 @@ use rs_pbrt::core::reflection::{
     LambertianReflection, MicrofacetReflection, MicrofacetTransmission, SpecularReflection,
     SpecularTransmission, fr_dielectric,
 };
-use rs_pbrt::materials::disney::DisneyClearCoat;
+use rs_pbrt::materials::disney::{DisneyClearCoat, DisneyFakeSS};
 use rs_pbrt::materials::hair::HairBSDF;
 use std::f64::consts::PI;
 use std::sync::Arc;
@@ -290,6 +290,77 @@ fn precision() {
     }
 }
 
+/// core/microfacet.rs: cos θ in f32 lies on a grid of 6e-8 below 1, so that the
+/// normals drawn lie on rings.
+fn rings() {
+    println!("Normals drawn by Trowbridge-Reitz (all of them): distinct angles, and share along the normal exactly");
+    for alpha in [0.001, 0.01, 0.1] {
+        let d = TrowbridgeReitzDistribution::new(alpha, alpha, false);
+        let (mut random, mut angles, mut along) = (Random(5), std::collections::BTreeSet::new(), 0);
+        let n = 100_000;
+        for _ in 0..n {
+            let m = d.sample_wh(&v([0.0, 0.0, 1.0]), &u(&mut random));
+            if f64::from(m.x).hypot(m.y.into()) < f64::from(alpha) {
+                angles.insert(m.z.to_bits());
+            }
+            along += i32::from(m.x == 0.0 && m.y == 0.0);
+        }
+        println!(
+            "  α = {alpha}: {} angles with sin θ < α, {:.2} % along the normal",
+            angles.len(),
+            100.0 * f64::from(along) / f64::from(n)
+        );
+    }
+}
+
+/// core/reflection.rs:1203: wo·wh is rounded below 0 where both directions graze.
+fn grazing() {
+    let wo = Vector3f { x: 0.956_218_75, y: 0.292_652_87, z: 1e-7 };
+    let wi = Vector3f { x: -0.956_218_8, y: -0.292_652_93, z: 1.524_982_5e-8 };
+    let wh = (wo + wi).normalize();
+    let lobe = MicrofacetReflection::new(white(1.0), facets(0.3, true), Fresnel::NoOp(FresnelNoOp {}), None);
+    println!("MicrofacetReflection near wi = −wo at the horizon");
+    println!("  wo·wh = {:e}, pdf = {:e}", wo.x * wh.x + wo.y * wh.y + wo.z * wh.z, lobe.pdf(&wo, &wi));
+}
+
+/// materials/plastic.rs:99: the indices of the coat are 1.5 outside, 1 inside.
+fn plastic() {
+    println!("F of FresnelDielectric(1.5, 1), as PlasticMaterial makes it, and the other way round");
+    for theta in [0f32, 30.0, 42.0, 60.0] {
+        let cos = theta.to_radians().cos();
+        println!("  {theta}°: {:.4}, {:.4}", fr_dielectric(cos, 1.5, 1.0), fr_dielectric(cos, 1.0, 1.5));
+    }
+}
+
+/// materials/disney.rs: DisneyFakeSS by its formula, midpoint sums.
+fn fake_ss() {
+    println!("Albedo of DisneyFakeSS, colour 1");
+    for roughness in [0.0, 0.5, 1.0] {
+        let lobe = DisneyFakeSS::new(white(1.0), roughness, None);
+        let of = |theta: f64| {
+            let wo = at(theta, 17.0);
+            integral(0.0, 90.0, 400, |wi| f64::from(lobe.f(&v(wo), &v(wi)).c[0]) * wi[2])
+        };
+        println!("  roughness {roughness}: {:.3} at 0°, {:.3} at 60°, {:.3} at 85°", of(0.0), of(60.0), of(85.0));
+    }
+}
+
+/// core/reflection.rs, fr_dielectric(): 1 − F near the critical angle, in f32.
+fn critical() {
+    println!("1 − F from inside η = 1.5, this far below the critical angle: f32 over f64");
+    let critical = (1.0f64 / 1.5).asin();
+    for below in [1e-6, 1e-5, 1e-4, 1e-3] {
+        let cos = (critical - below).cos();
+        let sin_t = 1.5 * (1.0 - cos * cos).sqrt();
+        let cos_t = (1.0 - sin_t * sin_t).max(0.0).sqrt();
+        let p = (cos - 1.5 * cos_t) / (cos + 1.5 * cos_t);
+        let s = (1.5 * cos - cos_t) / (1.5 * cos + cos_t);
+        let exact = 1.0 - (p * p + s * s) / 2.0;
+        let found = 1.0 - f64::from(fr_dielectric(-cos as f32, 1.0, 1.5));
+        println!("  {below:e} rad: {:.4}", found / exact);
+    }
+}
+
 /// core/reflection.rs: an index of 1 makes a half vector of length 0, and
 /// normalize() refuses it.
 fn matched() {
@@ -373,13 +444,18 @@ fn beckmann() {
 type Finding = (&'static str, fn());
 
 fn main() {
-    let findings: [Finding; 12] = [
+    let findings: [Finding; 17] = [
         ("clearcoat", clearcoat),
         ("hair", hair),
         ("bessel", bessel),
         ("fourier", fourier),
         ("precision", precision),
+        ("rings", rings),
         ("matched", matched),
+        ("grazing", grazing),
+        ("plastic", plastic),
+        ("fake-ss", fake_ss),
+        ("critical", critical),
         ("inside", inside),
         ("transmission", transmission),
         ("specular", specular),

@@ -284,7 +284,6 @@ fn with_fresnel(model: Model) -> Model {
     model
         .choice("fresnel", &["none", "dielectric", "conductor", "disney"], "reflectance")
         .number("eta", 1.5, 1.0..=4.0, "index of refraction of the inside")
-        .role(Role::Eta)
         .only_when("fresnel", &["dielectric"])
 }
 
@@ -301,6 +300,10 @@ fn fresnel(p: &Parameters) -> Fresnel {
         "disney" => Fresnel::Disney(DisneyFresnel::new(colour(0.8), 0.5, 1.5)),
         _ => Fresnel::NoOp(FresnelNoOp {}),
     }
+}
+
+fn is_coloured(p: &Parameters) -> bool {
+    matches!(p.text("fresnel"), "conductor" | "disney")
 }
 
 fn with_eta(model: Model) -> Model {
@@ -352,11 +355,12 @@ fn smooth_lobes() -> Vec<Model> {
     let mirror = Model::new("pbrt-specular-reflection", "rs_pbrt: SpecularReflection", |p| {
         let make = |_, scale| Bxdf::SpecRefl(SpecularReflection::new(white(1.0), fresnel(p), scale));
         let name = p.text("fresnel");
-        Ok(lobe(p, make, "pbrt-specular-reflection", |c| {
+        let client = lobe(p, make, "pbrt-specular-reflection", |c| {
             c.isotropic = true;
             c.lossless = name == "none";
             c.two_sided = matches!(name, "none" | "conductor");
-        }))
+        });
+        Ok(if is_coloured(p) { client } else { client.grey() })
     });
 
     let refraction = Model::new("pbrt-specular-transmission", "rs_pbrt: SpecularTransmission", |p| {
@@ -383,7 +387,8 @@ fn smooth_lobes() -> Vec<Model> {
         .grey())
     });
 
-    let models = [lambert, through, oren_nayar, with_fresnel(mirror), with_eta(refraction), with_eta(glass)];
+    let mirror = with_fresnel(mirror).role(Role::Eta);
+    let models = [lambert, through, oren_nayar, mirror, with_eta(refraction), with_eta(glass)];
     models.into_iter().map(lobe_model).collect()
 }
 
@@ -392,10 +397,11 @@ fn facet_lobes() -> Vec<Model> {
         let make = |_, scale| {
             Bxdf::MicrofacetRefl(MicrofacetReflection::new(white(1.0), distribution(p), fresnel(p), scale))
         };
-        Ok(lobe(p, make, "pbrt-microfacet-reflection", |c| {
+        let client = lobe(p, make, "pbrt-microfacet-reflection", |c| {
             c.isotropic = is_isotropic(p);
             c.two_sided = matches!(p.text("fresnel"), "none" | "conductor");
-        }))
+        });
+        Ok(if is_coloured(p) { client } else { client.grey() })
     });
 
     let transmission = Model::new("pbrt-microfacet-transmission", "rs_pbrt: MicrofacetTransmission", |p| {
@@ -428,12 +434,13 @@ fn facet_lobes() -> Vec<Model> {
     .number("alpha", 0.3, 0.001..=1.0, "roughness along the tangent")
     .number("alpha_y", 0.0, 0.0..=1.0, "roughness along the bitangent; 0: as alpha");
 
-    let models = [with_fresnel(with_alpha(reflection)), with_eta(with_alpha(transmission)), blend];
+    let reflection = with_fresnel(with_alpha(reflection)).role(Role::Eta);
+    let models = [reflection, with_eta(with_alpha(transmission)), blend];
     models.into_iter().map(with_facets).map(lobe_model).collect()
 }
 
-/// A table of f·|cos θi| = ρ/π cos²θi |cos θo| (1 + g sin θi sin θo cos φ), which
-/// reflects only: Minnaert's law at k = 2, with a lean.
+/// A table of f·|cos θi| = 3ρ/4π cos²θi cos²θo (1 + g sin θi sin θo cos φ) on both
+/// sides, which is smooth: splines run over an edge at the horizon.
 fn table(rho: f64, g: f64) -> FourierBSDFTable {
     const NODES: usize = 81;
     let node = |k: usize| -1.0 + 2.0 * k as f64 / (NODES - 1) as f64;
@@ -449,17 +456,13 @@ fn table(rho: f64, g: f64) -> FourierBSDFTable {
     };
     for o in 0..NODES {
         for i in 0..NODES {
-            // Its mu_i is that of −wi.
             let (mu_o, mu_i) = (node(o), node(i));
-            let reflects = mu_o * mu_i < 0.0;
-            let a0 = if reflects { rho / std::f64::consts::PI * mu_i * mu_i * mu_o.abs() } else { 0.0 };
+            let a0 = 0.75 * rho / std::f64::consts::PI * (mu_i * mu_o).powi(2);
+            let sines = ((1.0 - mu_i * mu_i) * (1.0 - mu_o * mu_o)).sqrt();
             table.a_offset.push(table.a.len() as i32);
-            table.m.push(if reflects { 2 } else { 0 });
+            table.m.push(2);
             table.a0.push(a0 as f32);
-            if reflects {
-                let sines = ((1.0 - mu_i * mu_i) * (1.0 - mu_o * mu_o)).sqrt();
-                table.a.extend([a0 as f32, (g * sines * a0) as f32]);
-            }
+            table.a.extend([a0 as f32, (g * sines * a0) as f32]);
         }
         integrate_catmull_rom(NODES as i32, &table.mu, o * NODES, &table.a0, &mut table.cdf);
     }
@@ -478,7 +481,12 @@ fn special_lobes() -> Vec<Model> {
             }
             _ => Bxdf::DisDiff(DisneyDiffuse::new(white(0.8), scale)),
         };
-        Ok(lobe(p, make, "pbrt-disney-lobe", |c| (c.isotropic, c.two_sided) = (true, true)).grey())
+        Ok(lobe(p, make, "pbrt-disney-lobe", |c| {
+            (c.isotropic, c.two_sided) = (true, true);
+            // "1.25 scale is used to (roughly) preserve albedo"
+            c.energy_conserving = p.text("lobe") != "fake-ss";
+        })
+        .grey())
     })
     .choice("lobe", &["diffuse", "fake-ss", "retro", "sheen", "clearcoat"], "which of them")
     .number("roughness", 0.5, 0.0..=1.0, "of the base")
@@ -508,7 +516,6 @@ fn special_lobes() -> Vec<Model> {
         let table = Arc::new(table(p.number("reflectance"), p.number("lean")));
         let make = |mode, scale| Bxdf::Fourier(FourierBSDF::new(table.clone(), mode, scale));
         let mut client = lobe(p, make, "pbrt-fourier", |c| {
-            // Its splines run a little over the edge at the horizon.
             (c.isotropic, c.transmissive, c.reciprocal) = (true, true, false);
         });
         client.description = client.description.table(Table::default());
@@ -570,7 +577,8 @@ fn materials() -> Vec<Model> {
     })
     .number("kd", 0.25, 0.0..=1.0, "strength of the diffuse lobes")
     .number("ks", 0.25, 0.0..=1.0, "strength of the glossy lobes")
-    .number("alpha", 0.3, 0.001..=1.0, "roughness");
+    .number("alpha", 0.3, 0.001..=1.0, "roughness")
+    .only_if("ks > 0", |p| p.number("ks") > 0.0);
     let uber = Model::new("pbrt-uber", "rs_pbrt: UberMaterial", |p| {
         let mut scene = scene(
             &[("roughness", p.number("alpha")), ("eta", 1.5)],
@@ -591,7 +599,8 @@ fn materials() -> Vec<Model> {
     .number("ks", 0.25, 0.0..=1.0, "strength of the glossy lobe")
     .number("kr", 0.0, 0.0..=1.0, "strength of the mirror")
     .number("opacity", 1.0, 0.0..=1.0, "what is let through unseen is the rest")
-    .number("alpha", 0.3, 0.001..=1.0, "roughness");
+    .number("alpha", 0.3, 0.001..=1.0, "roughness")
+    .only_if("ks > 0", |p| p.number("ks") > 0.0);
 
     vec![with_eta(with_roughness(glass)), plastic, translucent, uber, disney_material(), mix()]
 }
@@ -687,13 +696,14 @@ struct Reflectance {
 
 impl FresnelFunction for Reflectance {
     fn describe(&self) -> Description {
-        described("pbrt-fresnel", |c| {
+        let description = described("pbrt-fresnel", |c| {
             c.eta = self.eta;
             c.transmissive = self.eta.is_some();
-        })
+        });
+        if self.eta.is_some() { description.channels(["value"]) } else { description }
     }
     fn reflectance(&self, cos: f64) -> Spectrum {
-        spectrum(self.fresnel.evaluate(cos as f32), 3)
+        spectrum(self.fresnel.evaluate(cos as f32), if self.eta.is_some() { 1 } else { 3 })
     }
 }
 
