@@ -73,8 +73,16 @@ fn horizon() {
             let f = outcome(|| format!("f = {}", material.evaluate(wo, wi)));
             println!("  {name}, {side}: {pdf}, {f}");
         }
-        let sample = outcome(|| format!("pdf = {}", material.sample_incoming(wo, Vec3d::new(0.3, 0.4, 0.5)).pdf));
-        println!("  {name}, sampled: {sample}");
+        let mut random = Random(7);
+        let mut told = std::collections::BTreeMap::new();
+        for _ in 0..1000 {
+            let (u, below) = (u(&mut random), Vec3d::new(0.6, 0.8, -0.0));
+            for wo in [wo, below] {
+                let draw = outcome(|| format!("pdf = {}", material.sample_incoming(wo, u).pdf));
+                *told.entry(draw).or_insert(0) += 1;
+            }
+        }
+        println!("  {name}, 2000 draws: {told:?}");
     }
 }
 
@@ -109,6 +117,23 @@ fn mix() {
             format!("wi = {:.4}, pdf = {:.4}", s.omega_i, s.pdf)
         });
         println!("  θo = {theta}°: {told}");
+    }
+}
+
+/// rough_glass.rs:105: wi = −wo at an index of 1, up to rounding, where half
+/// vector and Jacobian are 0/0.
+fn matched() {
+    println!("RoughGlass of index 1, α = 1: outcomes of 10000 draws");
+    let glass = RoughGlass { ggx: GGX { alpha_x: 1.0, alpha_y: 1.0 }, ior: 1.0 };
+    for theta in [0.0, 30.0, 60.0] {
+        let (mut random, mut panics, mut zero) = (Random(6), 0, 0);
+        for _ in 0..10_000 {
+            let u = u(&mut random);
+            let told = outcome(|| (glass.sample_incoming(v(at(theta, 17.0)), u).pdf == 0.0).to_string());
+            panics += i32::from(told.starts_with("panics"));
+            zero += i32::from(told == "true");
+        }
+        println!("  θo = {theta}°: {panics} panics, {zero} with pdf 0");
     }
 }
 
@@ -150,11 +175,12 @@ fn energy() {
 type Finding = (&'static str, fn());
 
 fn main() {
-    let findings: [Finding; 6] = [
+    let findings: [Finding; 7] = [
         ("emissive", emissive),
         ("horizon", horizon),
         ("eta", eta),
         ("mix", mix),
+        ("matched", matched),
         ("luminance", luminance),
         ("energy", energy),
     ];

@@ -76,7 +76,7 @@ fn facets(alpha: f32, visible: bool) -> MicrofacetDistribution {
     MicrofacetDistribution::TrowbridgeReitz(TrowbridgeReitzDistribution::new(alpha, alpha, visible))
 }
 
-/// materials/disney.rs:619: gtr1 divides by log10(α²) where ln(α²) belongs.
+/// materials/disney.rs:628: gtr1 divides by log10(α²) where ln(α²) belongs.
 fn clearcoat() {
     println!("The coat's ∫pdf over its share of valid draws; ln 10 = {:.4}", 10f64.ln());
     for gloss in [0.1, 0.03] {
@@ -161,7 +161,7 @@ fn bessel() {
     }
 }
 
-/// core/reflection.rs:1140: F is asked with wi·wh, which is positive on both
+/// core/reflection.rs:1162: F is asked with wi·wh, which is positive on both
 /// sides, so that inside counts as outside.
 fn inside() {
     let eta = 1.5;
@@ -221,7 +221,7 @@ fn transmission() {
     }
 }
 
-/// core/reflection.rs:885 and 982: a specular lobe has the density cos θ/π.
+/// core/reflection.rs:828 and 938: a specular lobe has the density cos θ/π.
 fn specular() {
     println!("pdf() at a direction that a specular lobe does not go to; pbrt returns 0");
     let (wo, wi) = (at(30.0, 17.0), at(50.0, 200.0));
@@ -256,7 +256,7 @@ fn scale() {
     println!("  f = {:.5}, sample_f = {:.5}", lobe.f(&wo, &wi).c[0], sampled.c[0]);
 }
 
-/// core/reflection.rs:703: FresnelConductor does not take |cos θ|.
+/// core/reflection.rs:685: FresnelConductor does not take |cos θ|.
 fn conductor() {
     println!("FresnelConductor (about copper, red) at cos θ and −cos θ");
     let metal = FresnelConductor { eta_i: white(1.0), eta_t: white(0.2), k: white(3.91) };
@@ -321,6 +321,8 @@ fn grazing() {
     let lobe = MicrofacetReflection::new(white(1.0), facets(0.3, true), Fresnel::NoOp(FresnelNoOp {}), None);
     println!("MicrofacetReflection near wi = −wo at the horizon");
     println!("  wo·wh = {:e}, pdf = {:e}", wo.x * wh.x + wo.y * wh.y + wo.z * wh.z, lobe.pdf(&wo, &wi));
+    let d = TrowbridgeReitzDistribution::new(0.01, 0.01, true);
+    println!("D(α = 0.01) of a normal at cos θ = 1e-12: {}", d.d(&Vector3f { x: 1.0, y: 0.0, z: 1e-12 }));
 }
 
 /// materials/plastic.rs:99: the indices of the coat are 1.5 outside, 1 inside.
@@ -426,7 +428,7 @@ fn fourier() {
     }
 }
 
-/// core/microfacet.rs:137: Λ of Beckmann is the rational fit of Walter et al.
+/// core/microfacet.rs:138: Λ of Beckmann is the rational fit of Walter et al.
 fn beckmann() {
     println!("Beckmann, all visible normals: ∫ G1 max(0, wo·m) D/cos θo dm, 1 if G1 were exact");
     for alpha in [0.1, 0.5, 1.0] {
