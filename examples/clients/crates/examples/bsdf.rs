@@ -49,12 +49,20 @@ fn emissive() {
     let lamp = || Emissive { emission: RgbF::ONE };
     let wo = at(30.0, 17.0);
     let z = integral(0.0, 180.0, 400, |wi| lamp().sample_incoming_pdf(v(wo), v(wi)));
-    println!("Emissive: ∫pdf = {z:.4} = 4π, f = 0, sampled direction {}", lamp().sample_incoming(v(wo), u(&mut Random(1))).omega_i);
+    println!(
+        "Emissive: ∫pdf = {z:.4} = 4π, f = 0, sampled direction {}",
+        lamp().sample_incoming(v(wo), u(&mut Random(1))).omega_i
+    );
     let mixed = Mix { b1: lamp(), b2: Lambert { kd: RgbF::ONE }, factor: 0.5 };
     for z in [0.2, 0.8] {
         let told = outcome(|| {
             let s = mixed.sample_incoming(v(wo), Vec3d::new(0.3, 0.4, z));
-            format!("wi = {}, pdf = {:.4} (pdf of the half that draws: {:.4})", s.omega_i, s.pdf, 0.5 * s.omega_i.z / PI)
+            format!(
+                "wi = {}, pdf = {:.4} (pdf of the half that draws: {:.4})",
+                s.omega_i,
+                s.pdf,
+                0.5 * s.omega_i.z / PI
+            )
         });
         println!("  mixed half and half with Lambert, u₂ = {z}: {told}");
     }
@@ -64,9 +72,11 @@ fn emissive() {
 fn horizon() {
     println!("pdf and value at wo ⟂ n");
     let (wo, wi) = (Vec3d::new(0.6, 0.8, 0.0), v(at(40.0, 60.0)));
-    let (metal, glass) = (Conductive { color: RgbF::ONE, ggx: ROUGH, ior: 1.5 }, RoughGlass { ggx: ROUGH, ior: 1.5 });
+    let (metal, glass) =
+        (Conductive { color: RgbF::ONE, ggx: ROUGH, ior: 1.5 }, RoughGlass { ggx: ROUGH, ior: 1.5 });
     let plastic = Disney::default();
-    let materials: [(&str, &dyn BSDF); 3] = [("Conductive", &metal), ("RoughGlass", &glass), ("Disney", &plastic)];
+    let materials: [(&str, &dyn BSDF); 3] =
+        [("Conductive", &metal), ("RoughGlass", &glass), ("Disney", &plastic)];
     for (name, material) in materials {
         for (side, wi) in [("same side", wi), ("other side", -wi)] {
             let pdf = outcome(|| format!("pdf = {}", material.sample_incoming_pdf(wo, wi)));
@@ -102,7 +112,10 @@ fn eta() {
             }
         }
         let scale: f64 = if theta < 90.0 { 1.0 / 1.5 } else { 1.5 };
-        println!("  θo = {theta}°: {sum:.4}; 1 − F = {count:.4}, (η_o/η_i)² (1 − F) = {:.4}", count * scale * scale);
+        println!(
+            "  θo = {theta}°: {sum:.4}; 1 − F = {count:.4}, (η_o/η_i)² (1 − F) = {:.4}",
+            count * scale * scale
+        );
     }
 }
 
@@ -143,7 +156,8 @@ fn luminance() {
     println!("  so that sheen of a white base, all tinted, is {:.4} of what it is untinted", 1.0 / 1.0036);
     let (wo, wi) = (v(at(80.0, 17.0)), v(at(80.0, 190.0)));
     let of = |sheen, sheen_tint| {
-        let material = Disney { base_color: RgbF::ONE, specular: 0.0, sheen, sheen_tint, ..Disney::default() };
+        let material =
+            Disney { base_color: RgbF::ONE, specular: 0.0, sheen, sheen_tint, ..Disney::default() };
         material.evaluate(wo, wi).x
     };
     println!("  found {:.4}", (of(1.0, 1.0) - of(0.0, 0.0)) / (of(1.0, 0.0) - of(0.0, 0.0)));
@@ -161,7 +175,10 @@ fn energy() {
         ("specular 0, sheen 1", Disney { specular: 0.0, sheen: 1.0, ..plain }),
         ("clearcoat 1, its roughness 0.5", Disney { clearcoat: 1.0, clearcoat_roughness: 0.5, ..plain }),
         ("metallic 1", Disney { metallic: 1.0, ..plain }),
-        ("metallic 1, clearcoat 1", Disney { metallic: 1.0, clearcoat: 1.0, clearcoat_roughness: 0.5, ..plain }),
+        (
+            "metallic 1, clearcoat 1",
+            Disney { metallic: 1.0, clearcoat: 1.0, clearcoat_roughness: 0.5, ..plain },
+        ),
     ];
     for (name, material) in cases {
         let of = |theta| {

@@ -12,13 +12,11 @@ use common::{Random, Vector, at, integral};
 use rs_pbrt::core::geometry::{Normal3f, Point2f, Vector3f};
 use rs_pbrt::core::interpolation::integrate_catmull_rom;
 use rs_pbrt::core::material::TransportMode;
-use rs_pbrt::core::microfacet::{
-    BeckmannDistribution, MicrofacetDistribution, TrowbridgeReitzDistribution,
-};
+use rs_pbrt::core::microfacet::{BeckmannDistribution, MicrofacetDistribution, TrowbridgeReitzDistribution};
 use rs_pbrt::core::pbrt::Spectrum;
 use rs_pbrt::core::reflection::{
-    Bsdf, Bxdf, FourierBSDF, FourierBSDFTable, Fresnel, FresnelConductor, FresnelDielectric, FresnelNoOp, FresnelSpecular,
-    LambertianReflection, MicrofacetReflection, MicrofacetTransmission, SpecularReflection,
+    Bsdf, Bxdf, FourierBSDF, FourierBSDFTable, Fresnel, FresnelConductor, FresnelDielectric, FresnelNoOp,
+    FresnelSpecular, LambertianReflection, MicrofacetReflection, MicrofacetTransmission, SpecularReflection,
     SpecularTransmission, fr_dielectric,
 };
 use rs_pbrt::materials::disney::{DisneyClearCoat, DisneyFakeSS};
@@ -244,7 +242,10 @@ fn specular() {
     let draws = (0..DRAWS).filter_map(|_| draw(&bsdf, wo, &mut random));
     let weights: f64 = draws.filter(|d| d.3 & 16 == 0).map(|(wi, f, p, _)| f * wi[2] / p).sum();
     println!("Beside a matte lobe of albedo 0.5, as UberMaterial with opacity puts it:");
-    println!("  ∫pdf = {z:.4}, drawn {diffuse:.4}, mean weight of the matte lobe {:.4}", weights / DRAWS as f64);
+    println!(
+        "  ∫pdf = {z:.4}, drawn {diffuse:.4}, mean weight of the matte lobe {:.4}",
+        weights / DRAWS as f64
+    );
 }
 
 /// core/reflection.rs: sample_f() of a lobe multiplies by the scale of f() again.
@@ -286,14 +287,20 @@ fn precision() {
             (f64::from(d.d(&v(w))) / exact - 1.0).abs()
         };
         let by_tilt = (0..1000).map(tilted).fold(0.0, f64::max);
-        println!("  α = {alpha}: {:.2} % at tan θ = α, {:.2} % from α/2 to 3α/2", 100.0 * by_azimuth, 100.0 * by_tilt);
+        println!(
+            "  α = {alpha}: {:.2} % at tan θ = α, {:.2} % from α/2 to 3α/2",
+            100.0 * by_azimuth,
+            100.0 * by_tilt
+        );
     }
 }
 
 /// core/microfacet.rs: cos θ in f32 lies on a grid of 6e-8 below 1, so that the
 /// normals drawn lie on rings.
 fn rings() {
-    println!("Normals drawn by Trowbridge-Reitz (all of them): distinct angles, and share along the normal exactly");
+    println!(
+        "Normals drawn by Trowbridge-Reitz (all of them): distinct angles, and share along the normal exactly"
+    );
     for alpha in [0.001, 0.01, 0.1] {
         let d = TrowbridgeReitzDistribution::new(alpha, alpha, false);
         let (mut random, mut angles, mut along) = (Random(5), std::collections::BTreeSet::new(), 0);
@@ -343,7 +350,12 @@ fn fake_ss() {
             let wo = at(theta, 17.0);
             integral(0.0, 90.0, 400, |wi| f64::from(lobe.f(&v(wo), &v(wi)).c[0]) * wi[2])
         };
-        println!("  roughness {roughness}: {:.3} at 0°, {:.3} at 60°, {:.3} at 85°", of(0.0), of(60.0), of(85.0));
+        println!(
+            "  roughness {roughness}: {:.3} at 0°, {:.3} at 60°, {:.3} at 85°",
+            of(0.0),
+            of(60.0),
+            of(85.0)
+        );
     }
 }
 
@@ -367,14 +379,8 @@ fn critical() {
 /// normalize() refuses it.
 fn matched() {
     println!("MicrofacetTransmission of η = 1 straight through");
-    let lobe = MicrofacetTransmission::new(
-        white(1.0),
-        facets(0.3, true),
-        1.0,
-        1.0,
-        TransportMode::Radiance,
-        None,
-    );
+    let lobe =
+        MicrofacetTransmission::new(white(1.0), facets(0.3, true), 1.0, 1.0, TransportMode::Radiance, None);
     let wo = at(30.0, 17.0);
     std::panic::set_hook(Box::new(|_| {}));
     let told = std::panic::catch_unwind(|| lobe.pdf(&v(wo), &v(wo.map(|x| -x))));
@@ -409,7 +415,9 @@ fn fourier() {
         integrate_catmull_rom(NODES as i32, &table.mu, o * NODES, &table.a0, &mut table.cdf);
     }
     let bsdf = sum(vec![Bxdf::Fourier(FourierBSDF::new(Arc::new(table), TransportMode::Radiance, None))]);
-    println!("FourierBSDF of cos²θi: mean cos θi and sin θi of draws; 0.750 and 0.589 of the density 3 cos²θi/2π");
+    println!(
+        "FourierBSDF of cos²θi: mean cos θi and sin θi of draws; 0.750 and 0.589 of the density 3 cos²θi/2π"
+    );
     for theta in [0.0, 0.01, 0.1, 30.0] {
         let wo = at(theta, 17.0);
         let (mut random, n) = (Random(4), 100_000);

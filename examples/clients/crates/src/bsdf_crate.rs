@@ -226,12 +226,17 @@ fn disney(p: &Parameters) -> Client {
 }
 
 fn disney_model() -> Model {
-    let model = Model::new("bsdf-disney", "crate bsdf: Disney", |p| Ok(disney(p)))
-        .number("base_color", 0.8, 0.0..=1.0, "red of the base colour; green 3/4, blue 1/2 of it");
-    let model = with_stretch(model.number("roughness", 0.5, 0.0..=1.0, "square root of the specular lobe's α"))
-        .idle()
-        .number("rotation", 0.0, 0.0..=1.0, "turns the stretched lobe, in units of 180°")
-        .idle();
+    let model = Model::new("bsdf-disney", "crate bsdf: Disney", |p| Ok(disney(p))).number(
+        "base_color",
+        0.8,
+        0.0..=1.0,
+        "red of the base colour; green 3/4, blue 1/2 of it",
+    );
+    let model =
+        with_stretch(model.number("roughness", 0.5, 0.0..=1.0, "square root of the specular lobe's α"))
+            .idle()
+            .number("rotation", 0.0, 0.0..=1.0, "turns the stretched lobe, in units of 180°")
+            .idle();
     let model = [
         ("specular", 0.5, "strength of the reflection"),
         ("sheen", 0.0, "strength of the sheen"),

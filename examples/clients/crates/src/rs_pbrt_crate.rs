@@ -146,11 +146,7 @@ impl Bsdf for Client {
 }
 
 fn described(name: &str, claims: impl FnOnce(&mut Claims)) -> Description {
-    Description::new(name)
-        .channels(["r", "g", "b"])
-        .dimensions(2)
-        .precision(Precision::F32)
-        .claims(claims)
+    Description::new(name).channels(["r", "g", "b"]).dimensions(2).precision(Precision::F32).claims(claims)
 }
 
 /// The frame in which local and world directions are the same.
@@ -196,11 +192,7 @@ fn lobe_model(model: Model) -> Model {
 }
 
 /// What a material makes of a surface.
-fn material(
-    name: &str,
-    material: &Material,
-    claims: impl FnOnce(&mut Claims),
-) -> Result<Client, String> {
+fn material(name: &str, material: &Material, claims: impl FnOnce(&mut Claims)) -> Result<Client, String> {
     let sum = |mode| {
         let mut surface = SurfaceInteraction::default();
         let plane = sum_of(Vec::new());
@@ -476,9 +468,7 @@ fn special_lobes() -> Vec<Model> {
             "fake-ss" => Bxdf::DisSS(DisneyFakeSS::new(white(0.8), roughness, scale)),
             "retro" => Bxdf::DisRetro(DisneyRetro::new(white(0.8), roughness, scale)),
             "sheen" => Bxdf::DisSheen(DisneySheen::new(white(0.8), scale)),
-            "clearcoat" => {
-                Bxdf::DisClearCoat(DisneyClearCoat::new(1.0, p.number("gloss") as f32, scale))
-            }
+            "clearcoat" => Bxdf::DisClearCoat(DisneyClearCoat::new(1.0, p.number("gloss") as f32, scale)),
             _ => Bxdf::DisDiff(DisneyDiffuse::new(white(0.8), scale)),
         };
         Ok(lobe(p, make, "pbrt-disney-lobe", |c| {
@@ -708,10 +698,11 @@ impl FresnelFunction for Reflectance {
 }
 
 fn parts() -> Vec<Model> {
-    let normals = with_alpha(Model::distribution("pbrt-normals", "rs_pbrt: its distributions of normals", |p| {
-        Ok(Normals { all: facets(p, false), visible: facets(p, true), is_isotropic: is_isotropic(p) })
-    }))
-    .choice("distribution", &["trowbridge-reitz", "beckmann"], "of facet normals");
+    let normals =
+        with_alpha(Model::distribution("pbrt-normals", "rs_pbrt: its distributions of normals", |p| {
+            Ok(Normals { all: facets(p, false), visible: facets(p, true), is_isotropic: is_isotropic(p) })
+        }))
+        .choice("distribution", &["trowbridge-reitz", "beckmann"], "of facet normals");
 
     let fresnel = with_fresnel(Model::fresnel("pbrt-fresnel", "rs_pbrt: its Fresnel functions", |p| {
         let eta = (p.text("fresnel") == "dielectric").then(|| p.number("eta"));

@@ -16,8 +16,7 @@ pub fn integral(from: f64, to: f64, steps: usize, f: impl Fn(Vector) -> f64) -> 
     let mut sum = 0.0;
     for j in 0..steps {
         let theta = from + (j as f64 + 0.5) * width;
-        let ring: f64 =
-            (0..2 * steps).map(|k| f(at(theta, (k as f64 + 0.5) * 180.0 / steps as f64))).sum();
+        let ring: f64 = (0..2 * steps).map(|k| f(at(theta, (k as f64 + 0.5) * 180.0 / steps as f64))).sum();
         sum += ring * theta.to_radians().sin();
     }
     sum * width.to_radians() * PI / steps as f64
