@@ -322,7 +322,7 @@ fn rings() {
 
 /// core/reflection.rs:1203: wo·wh is rounded below 0 where both directions graze.
 fn grazing() {
-    let wo = Vector3f { x: 0.956_218_75, y: 0.292_652_87, z: 1e-7 };
+    let wo = Vector3f { x: 0.956_218_8, y: 0.292_652_87, z: 1e-7 };
     let wi = Vector3f { x: -0.956_218_8, y: -0.292_652_93, z: 1.524_982_5e-8 };
     let wh = (wo + wi).normalize();
     let lobe = MicrofacetReflection::new(white(1.0), facets(0.3, true), Fresnel::NoOp(FresnelNoOp {}), None);
