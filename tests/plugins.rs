@@ -7,7 +7,7 @@ mod sandbox;
 
 use gonio::bsdf::{Direction, Lobe, Samples, Transport};
 use gonio::registry::Registry;
-use sandbox::{Sandbox, library, script};
+use sandbox::{Sandbox, library, python, script};
 
 /// What is shown of a subject that does `deed`.
 fn library_that(deed: &str) -> String {
@@ -46,7 +46,7 @@ fn told(subject: &str, deed: &str, parts: &[&str]) {
     let run = sandbox.suite(subject, &["--memory", "300", "--call-limit", limit]);
     assert_eq!(run.code, Some(3), "{deed}: {}", run.text);
     for part in parts {
-        assert!(run.text.contains(part), "{deed}: no `{part}` in\n{}", run.text);
+        assert!(run.flat.contains(part), "{deed}: no `{part}` in\n{}", run.text);
     }
     // The other subject of the suite has all its results.
     let row = run.text.lines().find(|l| l.starts_with("lambert ")).unwrap_or_else(|| panic!("{}", run.text));
@@ -152,7 +152,7 @@ fn a_program_that_ends_or_hangs() {
         ("exit", &["ended with exit code 0"]),
         ("kill", &["SIGKILL"]),
         ("close", &["closed its standard output"]),
-        ("deaf", &["closed its standard input"]),
+        ("deaf", &["did not answer eval()"]),
         ("hang", &["within 1 s", "now I think about it"]),
         ("flood", &["within 1 s", "xxxx"]),
     ] {
@@ -212,4 +212,62 @@ fn mistakes_in_naming_a_plugin_are_told() {
     }
     let list = sandbox.gonio(&["list", so.to_str().unwrap()]);
     assert!(list.output.contains("deed") && list.output.contains("segfault"), "{}", list.output);
+}
+
+/// Every convention, alone and together: told if it contradicts the declaration, and
+/// measured as it is; silent if declared.
+#[test]
+fn conventions_are_probed() {
+    for (follows, part) in [
+        ("weight=f", "declare `weight` = \"f\""),
+        ("weight=f-cos", "declare `weight` = \"f-cos\""),
+        ("weight=f-over-pdf", "declare `weight` = \"f-over-pdf\""),
+        ("failure=zero-pdf", "declare `failure` = \"zero-pdf\""),
+        ("up=y", "declare `up` = \"y\""),
+        ("given=towards", "declare `given` = \"towards\""),
+        ("up=y,given=towards,weight=f,failure=zero-pdf", "declare `given` = \"towards\""),
+    ] {
+        let options = ["--theta", "40", "--samples", "2^15", "--check", "sanity", "--check", "weight"];
+        let options = [&options[..], &["--check", "goodness-of-fit", "--detect", "1"]].concat();
+        let run = |declared: &str| {
+            let subject = python(&format!("conventions.py {follows} {declared}"));
+            Sandbox::new("conventions").check(&subject, &options)
+        };
+        let (silent, told) = (run("declared"), run("undeclared"));
+        assert_eq!((silent.code, told.code), (Some(0), Some(0)), "{follows}: {}{}", silent.text, told.text);
+        assert!(
+            told.flat.contains(part) && told.flat.contains("measured as such"),
+            "{follows}: {}",
+            told.text
+        );
+        assert!(!silent.text.contains("declare `") && silent.text.contains("3 passed"), "{}", silent.text);
+    }
+}
+
+#[test]
+fn a_plugin_in_a_suite_is_found_beside_it() {
+    let sandbox = Sandbox::new("suite");
+    let folder = sandbox.folder().join("materials");
+    std::fs::create_dir(&folder).unwrap();
+    std::fs::copy(library("hostile"), folder.join("paint.so")).unwrap();
+    std::fs::copy(sandbox::data("conventions.py"), folder.join("lambert.py")).unwrap();
+    let text = "[suite]\nname = \"beside\"\ntheta = 30\nphi = 17\nsamples = \"2^14\"\ndetect = 1.0\n\
+        checks = [\"sanity\", \"energy\"]\n\
+        [[subject]]\nlibrary = \"paint.so#hostile\"\nreference = \"paint.so\"\n\
+        [[subject]]\nprocess = [\"python3\", \"lambert.py\", \"up=z\", \"declared\"]\n";
+    std::fs::write(folder.join("suite.toml"), text).unwrap();
+    let run = sandbox.gonio(&["run", "materials/suite.toml"]);
+    assert_eq!(run.code, Some(0), "{}", run.text);
+    for (line, part) in [
+        ("library = \"pain.so\"", "does not exist"),
+        ("library = \"lambert.py\"", "no shared library"),
+        ("process = [\"pyhton3\"]", "no program `pyhton3`"),
+        ("process = []", "empty list"),
+        ("wasm = \"paint.so\"", "no WebAssembly module"),
+        ("library = \"paint.so#matte\"", "has no model `matte`"),
+    ] {
+        std::fs::write(folder.join("wrong.toml"), format!("[[subject]]\n{line}\n")).unwrap();
+        let run = sandbox.gonio(&["run", "materials/wrong.toml"]);
+        assert!(run.code == Some(2) && run.flat.contains(part), "{line}: {}", run.text);
+    }
 }

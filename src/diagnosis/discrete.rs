@@ -89,16 +89,25 @@ pub fn claims(view: &View, book: Option<&Textbook>) -> Vec<Claim> {
     claims.into_iter().map(|c| c.covers(COVERS)).collect()
 }
 
+/// More directions than a model has discrete lobes.
+const MOST: usize = 32;
+
+/// Directions nearer than this are one: rounding of f32.
+const APART: f64 = 1e-5;
+
 /// A kind of lobe taken for another.
 fn confounded(view: &View) -> Option<Claim> {
     let overflow: u64 = view.cases.iter().flat_map(|s| &s.evidence.draws).map(|d| d.discrete_overflow).sum();
     let distinct = view.cases.iter().map(|s| {
-        let mut seen: Vec<Direction> = s.discrete.iter().map(|d| d.0).collect();
-        seen.sort_by(|a, b| a.x.total_cmp(&b.x));
-        seen.dedup_by(|a, b| (*a - *b).length() < 1e-9);
+        let mut seen: Vec<Direction> = Vec::new();
+        for (direction, ..) in &s.discrete {
+            if seen.len() <= MOST && seen.iter().all(|d| (*d - *direction).length() >= APART) {
+                seen.push(*direction);
+            }
+        }
         seen.len()
     });
-    if overflow > 0 || distinct.max().unwrap_or(0) > 32 {
+    if overflow > 0 || distinct.max().unwrap_or(0) > MOST {
         return Some(Claim::new(
             Cause::DiscreteLobe,
             "samples of a continuous lobe are flagged discrete: their directions are all different",

@@ -288,8 +288,10 @@ fn split_by_share(book: &Textbook, raws: &[(&Seen, Raw)]) -> bool {
 fn nothing_drawn(view: &View) -> Vec<Claim> {
     let fails = view.fails_any(&["goodness-of-fit", "normalization", "albedo", "support", "sanity"]);
     let none = view.cases.iter().all(|s| s.discrete.is_empty() && s.points.iter().all(|p| p.drawn.is_none()));
+    // One that fails returns nothing either, and says why.
+    let halted = || view.cases.iter().any(|s| !s.evidence.halts.is_empty());
     let unsound = || view.cases.iter().any(|s| raw(view, s).broken.iter().any(|b| *b));
-    if !fails || !none || !view.description.has.sample || unsound() {
+    if !fails || !none || !view.description.has.sample || halted() || unsound() {
         return Vec::new();
     }
     vec![

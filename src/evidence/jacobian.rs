@@ -134,16 +134,15 @@ fn slopes(meter: &Meter, setup: &Setup) -> Result<Vec<Point>, Halt> {
         }
     }
     meter.sample(setup.wo, &u, setup.transport, &mut samples)?;
-    let centres: Vec<Direction> = samples.wi.iter().step_by(1 + 4 * d).copied().collect();
+    let mut usable: Vec<usize> = (0..samples.len()).step_by(1 + 4 * d).collect();
+    usable.retain(|first| {
+        (*first..first + 1 + 4 * d)
+            .all(|r| samples.lobe[r].is_continuous() && samples.lobe[r] == samples.lobe[*first])
+    });
+    let centres: Vec<Direction> = usable.iter().map(|first| samples.wi[*first]).collect();
     meter.pdf(setup.wo, &centres, setup.transport, &mut density)?;
     let mut points = Vec::new();
-    for (k, pdf) in density.into_iter().enumerate() {
-        let first = k * (1 + 4 * d);
-        let usable = (first..first + 1 + 4 * d)
-            .all(|r| samples.lobe[r].is_continuous() && samples.lobe[r] == samples.lobe[first]);
-        if !usable {
-            continue;
-        }
+    for (first, pdf) in usable.into_iter().zip(density) {
         let mut rough = 0.0f64;
         let slopes: Vec<Direction> = (0..d)
             .map(|j| {

@@ -7,7 +7,7 @@ use super::probes;
 use super::samples::{DiscreteDraw, Pilot, discrete_lobes};
 use super::setup::Setup;
 use super::tally::{Place, Tally, relative_error};
-use crate::bsdf::{Direction, RandomNumbers, Samples, Subject, SubjectKind};
+use crate::bsdf::{Direction, RandomNumbers, Samples, Subject, SubjectError, SubjectKind};
 use crate::evidence::Figure;
 use crate::registry::Role;
 use serde::{Deserialize, Serialize};
@@ -95,16 +95,28 @@ impl Variation {
                 continue;
             }
             let Some(subject) = (variant.build)() else { continue };
-            let description = Meter::describe(&*subject)?;
+            // What goes wrong there is not the subject at its own parameters.
+            let there = |halt: Halt| match halt {
+                Halt::Subject(e) => {
+                    let (name, value) = (&variant.parameter, &variant.to);
+                    Halt::Subject(SubjectError::Broken(format!(
+                        "with {name} = {value} in place of {}: {e}",
+                        variant.from
+                    )))
+                }
+                stopped => stopped,
+            };
+            let description = Meter::describe(&*subject).map_err(|e| there(e.into()))?;
             let other = Meter::new(&*subject, description, watch.clone());
             // As the case itself is measured, whatever the variant says of itself.
             other.cosine.set(meter.cosine.get());
             let change = if other.channels() == meter.channels() && other.dimensions() == meter.dimensions() {
-                own.distance(&Response::of(&other, setup, &given, &wi)?)
+                own.distance(&Response::of(&other, setup, &given, &wi).map_err(there)?)
             } else {
                 f64::INFINITY
             };
-            let limit = variant.limit.map(|role| limit(&other, setup, role, &variant.to)).transpose()?;
+            let limit = variant.limit.map(|role| limit(&other, setup, role, &variant.to));
+            let limit = limit.transpose().map_err(there)?;
             all.push(Self {
                 parameter: variant.parameter.clone(),
                 from: variant.from.clone(),

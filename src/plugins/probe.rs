@@ -148,13 +148,17 @@ fn frame(subject: &Foreign, declared: Conventions) -> Option<Conventions> {
         // Samples may lie anywhere.
         return None;
     }
-    // Share of draws that are samples on the side of wo.
+    // Share of samples that lie on the side of wo; 0 where few draws are samples.
     let right = |conventions: Conventions| -> f64 {
         let draws = draw(&subject.under(conventions)).unwrap_or_default();
-        let good = draws.iter().filter(|d| d.continuous && d.wi.z > 0.0 && d.returned_pdf > 0.0).count();
-        good as f64 / draws.len().max(1) as f64
+        let samples: Vec<&Draw> = draws.iter().filter(|d| d.continuous && d.returned_pdf > 0.0).collect();
+        if samples.len() * 4 < draws.len().max(1) {
+            return 0.0;
+        }
+        samples.iter().filter(|d| d.wi.z > 0.0).count() as f64 / samples.len() as f64
     };
-    if right(declared) > 0.5 {
+    // Half of them where the normal is another axis.
+    if right(declared) > 0.75 {
         return None;
     }
     let others =

@@ -53,6 +53,10 @@ fn other_values(parameter: &Parameter, parameters: &Parameters) -> Vec<Value> {
 /// Where α → 0, all roughnesses go to their minimum together: one alone leaves
 /// the lobe wide. Where η can be 1, it goes there.
 fn limits(registry: &Registry, model: &Model, parameters: &Parameters) -> Vec<Variant<'static>> {
+    // Where samples gather is a question to what has samples.
+    if !model.kind().has_directions() {
+        return Vec::new();
+    }
     let with_role =
         |role| move |p: &&Parameter| p.role == Some(role) && p.applies(parameters) && min(p).is_some();
     let mut all = Vec::new();

@@ -16,6 +16,8 @@ pub struct Run {
     pub code: Option<i32>,
     /// Standard error: what people read.
     pub text: String,
+    /// The same in one line.
+    pub flat: String,
     /// Standard output.
     pub output: String,
     pub seconds: f64,
@@ -31,6 +33,11 @@ impl Sandbox {
         }
     }
 
+    /// Where gonio is run.
+    pub fn folder(&self) -> &Path {
+        self.folder.path()
+    }
+
     fn command(&self, arguments: &[&str]) -> Command {
         let mut command = Command::new(env!("CARGO_BIN_EXE_gonio"));
         let (key, value) = self.mark.split_once('=').unwrap();
@@ -41,9 +48,11 @@ impl Sandbox {
     pub fn gonio(&self, arguments: &[&str]) -> Run {
         let start = Instant::now();
         let done = self.command(arguments).output().unwrap();
+        let text = String::from_utf8_lossy(&done.stderr).into_owned();
         Run {
             code: done.status.code(),
-            text: String::from_utf8_lossy(&done.stderr).into_owned(),
+            flat: text.split_whitespace().collect::<Vec<_>>().join(" "),
+            text,
             output: String::from_utf8_lossy(&done.stdout).into_owned(),
             seconds: start.elapsed().as_secs_f64(),
         }
@@ -107,7 +116,8 @@ pub fn within(seconds: f64, holds: impl Fn() -> bool) -> bool {
     false
 }
 
-fn data(name: &str) -> PathBuf {
+/// A file of tests/data/plugins.
+pub fn data(name: &str) -> PathBuf {
     Path::new(env!("CARGO_MANIFEST_DIR")).join("tests/data/plugins").join(name)
 }
 
@@ -129,5 +139,10 @@ pub fn library(name: &str) -> PathBuf {
 
 /// The command that runs tests/data/plugins/hostile.py.
 pub fn script(arguments: &str) -> String {
-    format!("python3 {} {arguments}", data("hostile.py").display())
+    python(&format!("hostile.py {arguments}"))
+}
+
+/// The command that runs a script of tests/data/plugins.
+pub fn python(words: &str) -> String {
+    format!("python3 {}{words}", data("").display())
 }

@@ -2,7 +2,6 @@
 
 use crate::plugins::limits::Limits;
 use std::ffi::OsString;
-use std::os::unix::process::CommandExt;
 use std::path::PathBuf;
 use std::process::{Child, Command, Stdio};
 use std::sync::OnceLock;
@@ -52,8 +51,6 @@ impl Launch {
             .stdin(Stdio::piped())
             .stdout(Stdio::piped())
             .stderr(Stdio::piped())
-            // An interrupt at the terminal is for gonio, which then ends its plugins.
-            .process_group(0)
             .spawn()
             .map_err(|e| format!("`{}` cannot be started: {e}", gonio.display()))
     }

@@ -7,7 +7,7 @@
 
 use rustix::event::{PollFd, PollFlags, poll};
 use rustix::process::{Pid, Resource, Rlimit, Signal, WaitOptions, WaitStatus};
-use rustix::process::{kill_process, set_child_subreaper, setrlimit, wait, waitpid};
+use rustix::process::{kill_process, set_child_subreaper, setrlimit, setsid, wait, waitpid};
 use std::collections::{BTreeSet, HashMap};
 use std::ffi::OsString;
 use std::process::Command;
@@ -25,8 +25,12 @@ pub fn supervise(command: &[OsString], memory: u64) -> i32 {
     let limit = |most| Rlimit { current: Some(most), maximum: Some(most) };
     // A limit that cannot be set is an error: the plugin must not run without.
     let limited = setrlimit(Resource::Core, limit(0)).and_then(|()| setrlimit(Resource::As, limit(memory)));
+    // In a session of its own it has no terminal: an interrupt there is for gonio, which
+    // then ends its plugins. Nor is it hung up when gonio ends while it has stopped
+    // processes, as a group would be that loses its parent.
+    let session = setsid();
     let reaper = set_child_subreaper(Some(rustix::process::getpid()));
-    if let Err(e) = limited.and(reaper) {
+    if let Err(e) = limited.and(reaper).and(session.map(drop)) {
         eprintln!("gonio cannot limit the plugin: {e}");
         return CANNOT_START;
     }

@@ -61,7 +61,7 @@ static int misbehave(const Subject *s) {
     if (is(s, "close")) { int k; for (k = 0; k < 64; k++) close(k); for (;;) pause(); }
     if (is(s, "abort")) abort();
     if (is(s, "stack")) { char c = 0; zero = deep(&c, 1); }
-    if (is(s, "divide")) zero = 1 / zero;
+    if (is(s, "divide")) zero = 7 / zero;
     return is(s, "refuse");
 }
 
