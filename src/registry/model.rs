@@ -6,6 +6,7 @@ use super::parameter::{Condition, Kind, Parameter, Parameters, Role, Value};
 use super::spelling::parenthesised;
 use crate::bsdf::{FresnelFunction, Interface, NormalDistribution, Normals, Subject, SubjectKind};
 use std::collections::BTreeMap;
+use std::panic::{AssertUnwindSafe, catch_unwind};
 use std::sync::Arc;
 
 /// The subjects that a model is made of, by the name of their parameter.
@@ -262,8 +263,14 @@ impl Model {
             let (_, subject) = registry.nested(&p.name, parameters.text(&p.name))?;
             parts.insert(p.name.clone(), subject);
         }
-        (self.build)(parameters, &Parts(parts))
-            .map_err(|message| RegistryError::Build { model: self.name.clone(), message })
+        // A constructor that panics refuses these parameters, and nothing more.
+        let build = AssertUnwindSafe(|| (self.build)(parameters, &Parts(parts)));
+        let built = catch_unwind(build).unwrap_or_else(|panic| {
+            let text = panic.downcast_ref::<String>().map(String::as_str);
+            let text = text.or_else(|| panic.downcast_ref::<&str>().copied());
+            Err(format!("its constructor panicked: {}", text.unwrap_or("without a word")))
+        });
+        built.map_err(|message| RegistryError::Build { model: self.name.clone(), message })
     }
 
     /// How the subject is written: the name, and the parameters that are not

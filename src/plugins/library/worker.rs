@@ -6,7 +6,7 @@ use std::fs::File;
 use std::io::{self, BufReader, BufWriter};
 use std::path::Path;
 
-/// A batch in a buffer makes one call of the system.
+/// An answer in a buffer makes one call of the system.
 const BUFFER: usize = 1 << 20;
 
 /// Loads the library at `path` and answers for it on standard input and output.
@@ -21,7 +21,8 @@ pub fn work(path: &Path) -> io::Result<()> {
     let mut loaded = Loaded::open(path).map_err(|fault| io::Error::other(fault.to_string()))?;
     wire::serve(
         &mut loaded,
-        BufReader::with_capacity(BUFFER, input),
+        // What is longer than its buffer goes by it.
+        BufReader::new(input),
         BufWriter::with_capacity(BUFFER, output),
     )
 }
