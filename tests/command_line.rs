@@ -296,7 +296,7 @@ fn ends_with_2_for_a_wrong_suite_with_the_line_and_the_nearest_name() {
         ("[[subject]]\nuse = \"lambert\"\nclaims = { reciprocal = 3 }", 3, "reciprocal"),
         ("[[subject]]\nuse = \"lambert\"\nwaive = [{ check = \"suport\", because = \"x\" }]", 3, "support"),
         ("[[subject]]\nuse = \"lambert\"\nreference = \"lambart\"", 3, "did you mean `lambert`?"),
-        ("[[subject]]\nprocess = [\"python3\"]", 2, "not supported"),
+        ("[[subject]]\nshader = \"x.wgsl\"", 2, "not supported"),
     ] {
         desk.write("wrong.toml", text);
         let run = desk.gonio("run wrong.toml");

@@ -271,3 +271,24 @@ fn a_plugin_in_a_suite_is_found_beside_it() {
         assert!(run.code == Some(2) && run.flat.contains(part), "{line}: {}", run.text);
     }
 }
+
+/// What a subject has not, or does by chance, is skipped for that reason; the rest
+/// passes.
+#[test]
+fn subjects_of_every_kind() {
+    for (kind, code, row) in [
+        // san det fit nrm sup wgt pdf alb mis nrg fur rec iso dis
+        ("eval-only", 0, "✓ ✓ – – – – – – – ✓ – ✓ ✓ –"),
+        ("internal", 0, "✓ ✓ ✓ ✓ ✓ ✓ ✓ ✓ ✓ ✓ – ✓ – –"),
+        ("f32", 0, "✓ ✓ ✓ ✓ ✓ ✓ ✓ ✓ ✓ ✓ – ✓ ✓ –"),
+        ("unimplemented", 1, "✗ – – – – – – – – – – – – –"),
+    ] {
+        let subject = python(&format!("kinds.py {kind}"));
+        let run =
+            Sandbox::new(kind).check(&subject, &["--theta", "50", "--samples", "2^15", "--detect", "1"]);
+        assert_eq!(run.code, Some(code), "{kind}: {}", run.text);
+        let line = run.text.lines().find(|l| l.starts_with("python3 ")).unwrap();
+        let signs: Vec<&str> = line.split_whitespace().filter(|w| "✓✗–?!E".contains(*w)).collect();
+        assert_eq!(signs[..14].join(" "), row, "{kind}: {}", run.text);
+    }
+}

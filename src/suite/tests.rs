@@ -90,7 +90,7 @@ fn mistakes(text: &str) -> Vec<String> {
 }
 
 /// Text, line of the mistake, and what its message must contain.
-const MISTAKES: [(&str, usize, &[&str]); 33] = [
+const MISTAKES: [(&str, usize, &[&str]); 36] = [
     ("[suite\nname = 1", 1, &["not TOML"]),
     ("[suite]\nseed = 1\nseed = 2", 3, &["not TOML", "duplicate"]),
     ("[suit]\nname = 'a'", 1, &["`suit`", "did you mean `suite`?"]),
@@ -122,7 +122,10 @@ const MISTAKES: [(&str, usize, &[&str]); 33] = [
     ("[[subject]]\nuse = 'lambert'\nclaims = { loss = true }", 3, &["`loss`", "did you mean `lossless`?"]),
     ("[[subject]]\nuse = 'lambert'\nclaims = { lossless = 'x' }", 3, &["`lossless` cannot be \"x\""]),
     ("[[subject]]\nuse = 'lambert'\nwaive = [{ check = 'mis' }]", 3, &["without `because`"]),
-    ("[[subject]]\nprocess = ['python3', 'a.py']", 2, &["`process`", "not supported by this version"]),
+    ("[[subject]]\nshader = 'a.wgsl'", 2, &["`shader`", "not supported by this version"]),
+    ("[[subject]]\nprocess = ['no-such-program', 'a.py']", 2, &["`no-such-program`", "PATH"]),
+    ("[[subject]]\nlibrary = 'a.so'", 2, &["`a.so` does not exist", "folder of the suite"]),
+    ("[suite]\nmemory = 1", 2, &["1 MiB", "4096"]),
     ("[[subject]]\nuse = 'lambert'\nreference = 'lambert:x'", 3, &["not KEY=VALUE"]),
 ];
 

@@ -42,13 +42,15 @@ fn header(read: &[u8]) -> Result<Option<(&str, usize)>, String> {
 
 /// What bytes say that are no frame.
 fn garbage(read: &[u8]) -> String {
-    let begin = String::from_utf8_lossy(&read[..read.len().min(16)]);
+    // Its first line: frames may follow.
+    let line = read.iter().position(|b| *b == b'\n').unwrap_or(read.len());
+    let begin = String::from_utf8_lossy(&read[..line.min(16)]);
     // A character may be cut at the end.
     let begin = begin.trim_end_matches('\u{fffd}');
-    if !begin.is_empty() && begin.chars().all(|c| c != '\u{fffd}' && (!c.is_control() || c.is_whitespace())) {
+    if !begin.is_empty() && begin.chars().all(|c| c != '\u{fffd}' && (!c.is_control() || c == '\t')) {
         format!(
             "it wrote `{}` to standard output, where its answers go; it should print to standard error",
-            shown(read)
+            shown(&read[..line])
         )
     } else {
         let hex: Vec<String> = read.iter().take(12).map(|b| format!("{b:02x}")).collect();
@@ -116,7 +118,8 @@ mod tests {
             let found = take(&mut read.to_vec(), &mut vec![0.0; numbers]);
             found.err().unwrap_or_else(|| panic!("{read:?}"))
         };
-        assert!(wrong(b"Hello, world\n", 1).contains("`Hello, world\\n` to standard output"));
+        assert!(wrong(b"Hello, world\n", 1).contains("`Hello, world` to standard output"));
+        assert!(wrong("debugging…\n\x10\0\0\0{".as_bytes(), 1).contains("`debugging…` to"));
         assert!(wrong(b"\0\0\0\0xxxx", 1).contains("00 00 00 00 78"));
         assert!(wrong(&frame(r#"{"bytes":8}"#, &[1.0]), 2).contains("1 numbers (8 bytes) where 2 are due"));
         assert!(wrong(&frame("[]", &[]), 1).contains("frame"));
