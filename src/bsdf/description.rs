@@ -117,6 +117,10 @@ pub struct Description {
     /// reason given here.
     #[serde(default, skip_serializing_if = "Vec::is_empty")]
     pub by_construction: Vec<ByConstruction>,
+    /// What keys its random numbers in place of how it is written, which for a plugin
+    /// is a path: the same plugin is measured alike wherever it lies.
+    #[serde(default, skip_serializing_if = "Option::is_none")]
+    pub key: Option<String>,
     /// What a probe found to contradict the conventions that it declares.
     #[serde(default, skip_serializing_if = "Vec::is_empty")]
     pub contradictions: Vec<String>,
@@ -138,9 +142,15 @@ impl Description {
             has: Has::default(),
             claims: Claims::default(),
             by_construction: Vec::new(),
+            key: None,
             contradictions: Vec::new(),
             table: None,
         }
+    }
+
+    /// What keys the random numbers of a subject that is written so.
+    pub fn key<'a>(&'a self, spelling: &'a str) -> &'a str {
+        self.key.as_deref().unwrap_or(spelling)
     }
 
     /// With channels of these names (1 to 16 of them).

@@ -114,6 +114,9 @@ pub enum SubjectError {
         /// What it was doing.
         state: String,
     },
+    /// It says that it cannot answer this call; others it may.
+    #[error("{0}")]
+    Refused(String),
     /// It crashed, hung or broke the protocol; the text says how.
     #[error("{0}")]
     Broken(String),

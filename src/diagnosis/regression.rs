@@ -459,7 +459,9 @@ fn draw(counts: &mut Counts, evidence: &Evidence, subject: &dyn Subject, draws: 
     const BLOCK: u64 = 4096;
     let Some(partition) = &evidence.partition else { return };
     let (channels, d) = (evidence.description.channels.len().max(1), evidence.description.dimensions.max(1));
-    let key = StreamKey::new(0).with("subject", &evidence.subject).with("stage", "regression");
+    let key = StreamKey::new(0)
+        .with("subject", evidence.description.key(&evidence.subject))
+        .with("stage", "regression");
     let key = key.with("wo", &format!("{:x} {:x}", evidence.wo.x.to_bits(), evidence.wo.z.to_bits()));
     (counts.leaves, counts.draws) = (vec![0; partition.len()], 0);
     let mut u = vec![0.0; BLOCK as usize * d];

@@ -150,7 +150,9 @@ impl<'a> View<'a> {
     fn draws(&self, evidence: &Evidence, wo: Direction, transport: Transport) -> Vec<(Direction, Drawn)> {
         let d = self.description.dimensions.max(1);
         let mut u = vec![0.0; DRAWS * d];
-        let key = StreamKey::new(0).with("subject", &evidence.subject).with("stage", "diagnosis");
+        let key = StreamKey::new(0)
+            .with("subject", evidence.description.key(&evidence.subject))
+            .with("stage", "diagnosis");
         key.with("wo", &format!("{:x} {:x}", wo.x.to_bits(), wo.z.to_bits())).block(0).fill(false, &mut u);
         let samples = self.sample(wo, &u, transport);
         let sound = |k: &usize| {

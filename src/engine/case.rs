@@ -175,7 +175,7 @@ impl<'r, 'a> Run<'r, 'a> {
             precision: description.precision,
             claims: description.claims,
             key: StreamKey::new(seed)
-                .with("subject", &case.spelling)
+                .with("subject", description.key(&case.spelling))
                 .with("wo", &format!("{:x} {:x} {:x}", wo.x.to_bits(), wo.y.to_bits(), wo.z.to_bits()))
                 .with("transport", &case.transport.to_string()),
             mis: description.has.eval

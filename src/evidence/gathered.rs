@@ -259,7 +259,14 @@ impl<'a> Gatherer<'a> {
     /// Whether nothing more can be measured: out of time, broken, or stopped.
     pub fn is_over(&self) -> bool {
         let survivable = |halt: &Halt| {
-            matches!(halt, Halt::Subject(SubjectError::Panicked { .. } | SubjectError::WrongLength { .. }))
+            matches!(
+                halt,
+                Halt::Subject(
+                    SubjectError::Panicked { .. }
+                        | SubjectError::WrongLength { .. }
+                        | SubjectError::Refused(_)
+                )
+            )
         };
         self.evidence.halts.iter().any(|(step, halt)| *step == Measurement::Draws || !survivable(halt))
     }

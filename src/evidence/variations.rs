@@ -97,14 +97,14 @@ impl Variation {
             let Some(subject) = (variant.build)() else { continue };
             // What goes wrong there is not the subject at its own parameters.
             let there = |halt: Halt| match halt {
-                Halt::Subject(e) => {
+                Halt::Subject(e @ (SubjectError::Panicked { .. } | SubjectError::Refused(_))) => {
                     let (name, value) = (&variant.parameter, &variant.to);
-                    Halt::Subject(SubjectError::Broken(format!(
+                    Halt::Subject(SubjectError::Refused(format!(
                         "with {name} = {value} in place of {}: {e}",
                         variant.from
                     )))
                 }
-                stopped => stopped,
+                other => other,
             };
             let description = Meter::describe(&*subject).map_err(|e| there(e.into()))?;
             let other = Meter::new(&*subject, description, watch.clone());

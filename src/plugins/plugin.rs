@@ -100,10 +100,13 @@ impl Plugin {
     }
 
     fn note(&self, subject: u64, fault: Fault) -> SubjectError {
-        if let Fault::Ended(how) = &fault {
-            self.pool().ends.entry(subject).or_default().push(how.clone());
+        match fault {
+            Fault::Refused(why) => SubjectError::Refused(why),
+            Fault::Ended(how) => {
+                self.pool().ends.entry(subject).or_default().push(how.clone());
+                SubjectError::Broken(how)
+            }
         }
-        SubjectError::Broken(fault.to_string())
     }
 
     fn pool(&self) -> MutexGuard<'_, Pool> {

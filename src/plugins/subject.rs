@@ -74,6 +74,7 @@ impl Foreign {
         plugin.forgive(subject.made.number);
         subject.conventions = found;
         subject.description.contradictions = contradictions;
+        subject.description.key = Some(format!("{}:{}", subject.made.model, subject.made.parameters));
         Ok(subject)
     }
 

@@ -48,6 +48,7 @@ def assert_valid(
 
     Gives the report (report.json). The program is $GONIO, or gonio on PATH.
     """
+    __tracebackhide__ = True  # pytest shows the test and the message
     instance = bsdf() if isinstance(bsdf, type) else bsdf
     name = type(instance).__name__
     options = ["--samples", str(SAMPLES if samples is None else samples)]
