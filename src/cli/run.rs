@@ -8,13 +8,14 @@ use super::output::{emit, prove_writable, tell};
 use super::progress::Progress;
 use crate::diagnosis::{Explanation, diagnose_all};
 use crate::engine::{self, Event, Options};
+use crate::evidence::Meter;
 use crate::registry::{Registry, nearest};
 use crate::report::{
     Diagnosis, FileError, Files, REPORT, Report, draw_diagnoses, draw_results, evidence_of, summary,
     write_evidence, write_report,
 };
 use crate::suite::{EMBEDDED, Expanded, Plan, embedded, load, reproduce};
-use std::collections::BTreeMap;
+use std::collections::{BTreeMap, BTreeSet};
 use std::path::{Path, PathBuf};
 use std::sync::Arc;
 use std::sync::atomic::{AtomicBool, Ordering};
@@ -143,6 +144,25 @@ pub fn execute(request: &Request, voice: Voice) -> Result<Exit, CliError> {
     Ok(exit.unwrap_or(Exit::Nothing))
 }
 
+/// What subjects do contrary to the conventions that they declare, each once.
+fn contradictions(plan: &Plan<'static>) -> BTreeSet<String> {
+    let mut told = BTreeSet::new();
+    let mut last = None;
+    // Cases of a subject stand together.
+    for case in &plan.cases {
+        if last.replace(&case.spelling) == Some(&case.spelling) {
+            continue;
+        }
+        let found = Meter::describe(&*case.subject).map(|d| d.contradictions).unwrap_or_default();
+        told.extend(
+            found
+                .into_iter()
+                .map(|what| format!("warning: {}: {what}; it is measured as such", case.spelling)),
+        );
+    }
+    told
+}
+
 /// Runs one plan and hands its results to the report: where the command line
 /// meets the engine. Evidence is written case by case, so that a run that is
 /// killed leaves what it had.
@@ -155,6 +175,9 @@ fn run(
     if plan.cases.is_empty() {
         tell(&format!("suite `{}` has no case: nothing was run; add a [[subject]]", plan.suite));
         return Ok(Exit::Nothing);
+    }
+    if !voice.quiet {
+        contradictions(plan).iter().for_each(|told| tell(told));
     }
     let folder = request.folder(plan);
     let progress = Progress::new(plan, voice);
