@@ -238,6 +238,7 @@ fn conventions_are_probed() {
         };
         let (silent, told) = (run("declared"), run("undeclared"));
         assert_eq!((silent.code, told.code), (Some(0), Some(0)), "{follows}: {}{}", silent.text, told.text);
+        assert!(told.text.starts_with("warning: "), "{follows}: {}", told.text);
         assert!(
             told.flat.contains(part) && told.flat.contains("measured as such"),
             "{follows}: {}",
