@@ -296,3 +296,12 @@ fn subjects_of_every_kind() {
         assert_eq!(signs[..14].join(" "), row, "{kind}: {}", run.text);
     }
 }
+
+/// Code in the space of a scene: its frame is declared, and guessed by nobody.
+#[test]
+fn a_frame_of_a_scene_is_turned() {
+    let subject = python("conventions.py up=scene declared");
+    let run = Sandbox::new("scene").check(&subject, &["--theta", "40", "--samples", "2^15", "--detect", "1"]);
+    assert_eq!(run.code, Some(0), "{}", run.text);
+    assert!(run.text.contains(" 0 failed") && !run.text.contains("warning"), "{}", run.text);
+}

@@ -46,7 +46,7 @@ enum class Weight { f_cos_over_pdf, f_over_pdf, f_cos, f };
 /// How a draw without a sample is told.
 enum class Failure { flags, zero_pdf, zero_weight };
 /// Which axis is the normal; with y, x stays the tangent.
-enum class Up { z, y };
+enum class Up { z, y, frame };
 /// Whether wo points away from the surface, or along the ray towards it.
 enum class Given { away, towards };
 
@@ -73,6 +73,10 @@ struct Conventions {
     Failure failure = Failure::flags;
     Up up = Up::z;
     Given given = Given::away;
+    /// Where `up` is `Up::frame`: that which the code shades with, in the space of a
+    /// scene; unit vectors at right angles.
+    double normal[3] = {0.0, 0.0, 1.0};
+    double tangent[3] = {1.0, 0.0, 0.0};
 };
 
 namespace detail GONIO_HIDDEN {
@@ -113,6 +117,10 @@ inline std::string json(double number) {
         }
     }
     return text;
+}
+
+inline std::string json(const double (&v)[3]) {
+    return "[" + json(v[0]) + "," + json(v[1]) + "," + json(v[2]) + "]";
 }
 
 inline std::string json(const std::string &words) {
@@ -183,7 +191,12 @@ inline std::string json(const Conventions &c) {
     static const char *const given[] = {"away", "towards"};
     Object object;
     object.option("weight", c.weight, weight).option("failure", c.failure, failure);
-    object.option("up", c.up, up).option("given", c.given, given);
+    if (c.up == Up::frame) {
+        object.verbatim("up", Object().add("normal", c.normal).add("tangent", c.tangent).whole());
+    } else {
+        object.option("up", c.up, up);
+    }
+    object.option("given", c.given, given);
     return object.whole();
 }
 

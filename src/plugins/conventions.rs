@@ -57,15 +57,64 @@ pub enum Failure {
     ZeroWeight,
 }
 
-/// Which axis is the normal.
-#[derive(Clone, Copy, Debug, Default, PartialEq, Eq, Deserialize)]
+/// Where the normal and the tangent are in the plugin's own coordinates: an axis for the
+/// normal, x being the tangent, or both, for code that works in the space of a scene.
+#[derive(Clone, Copy, Debug, Default, PartialEq, Deserialize)]
 #[serde(rename_all = "lowercase")]
 pub enum Up {
-    /// z, and x the tangent.
+    /// z is the normal.
     #[default]
     Z,
-    /// y, and x the tangent.
+    /// y is the normal.
     Y,
+    /// A frame in another space.
+    #[serde(untagged)]
+    Frame(Frame),
+}
+
+/// Unit vectors at right angles.
+#[derive(Clone, Copy, Debug, PartialEq, Deserialize)]
+#[serde(deny_unknown_fields, try_from = "Vectors")]
+pub struct Frame {
+    normal: Direction,
+    tangent: Direction,
+}
+
+#[derive(Deserialize)]
+#[serde(deny_unknown_fields)]
+struct Vectors {
+    normal: [f64; 3],
+    tangent: [f64; 3],
+}
+
+impl TryFrom<Vectors> for Frame {
+    type Error = String;
+
+    fn try_from(Vectors { normal, tangent }: Vectors) -> Result<Self, String> {
+        let (n, t) = (Direction::from(normal), Direction::from(tangent));
+        let off = (n.length() - 1.0).abs().max((t.length() - 1.0).abs()).max(n.dot(t).abs());
+        // Seven digits of f32 are enough; what is left is taken away.
+        if !(off < 1e-6) {
+            return Err(format!(
+                "normal {normal:?} and tangent {tangent:?} are no unit vectors at right angles"
+            ));
+        }
+        let normal = n.normalized();
+        Ok(Self { normal, tangent: (t - normal * normal.dot(t)).normalized() })
+    }
+}
+
+impl Up {
+    /// Tangent, the direction at right angles to both, and normal.
+    fn axes(self) -> [Direction; 3] {
+        let (x, y, z) =
+            (Direction::new(1.0, 0.0, 0.0), Direction::new(0.0, 1.0, 0.0), Direction::new(0.0, 0.0, 1.0));
+        match self {
+            Self::Z => [x, y, z],
+            Self::Y => [x, -z, y],
+            Self::Frame(Frame { normal, tangent }) => [tangent, normal.cross(tangent), normal],
+        }
+    }
 }
 
 /// Where the given direction points.
@@ -80,14 +129,14 @@ pub enum Given {
 }
 
 /// The conventions of the code behind a plugin.
-#[derive(Clone, Copy, Debug, Default, PartialEq, Eq, Deserialize)]
+#[derive(Clone, Copy, Debug, Default, PartialEq, Deserialize)]
 #[serde(deny_unknown_fields, default)]
 pub struct Conventions {
     /// What `sample` returns as weight.
     pub weight: Weight,
     /// How a draw without a sample is told.
     pub failure: Failure,
-    /// Which axis is the normal.
+    /// Where the normal is.
     pub up: Up,
     /// Where the given direction points.
     pub given: Given,
@@ -102,18 +151,21 @@ impl Conventions {
 
     /// A sampled direction as the plugin takes it.
     pub fn direction(&self, d: Direction) -> [f64; 3] {
-        match self.up {
-            Up::Z => [d.x, d.y, d.z],
-            Up::Y => [d.x, d.z, -d.y],
+        if self.up == Up::Z {
+            return d.into();
         }
+        let [t, b, n] = self.up.axes();
+        (t * d.x + b * d.y + n * d.z).into()
     }
 
     /// A direction that the plugin returns.
-    pub fn from_plugin(&self, [x, y, z]: [f64; 3]) -> Direction {
-        match self.up {
-            Up::Z => Direction::new(x, y, z),
-            Up::Y => Direction::new(x, -z, y),
+    pub fn from_plugin(&self, direction: [f64; 3]) -> Direction {
+        let d = Direction::from(direction);
+        if self.up == Up::Z {
+            return d;
         }
+        let [t, b, n] = self.up.axes();
+        Direction::new(t.dot(d), b.dot(d), n.dot(d))
     }
 
     /// The lobe of a draw with these flags, density and weights.
@@ -166,12 +218,19 @@ mod tests {
     #[test]
     fn frames_turn_there_and_back() {
         let d = Direction::new(0.36, 0.48, 0.8);
-        for up in [Up::Z, Up::Y] {
+        let frame: Up = serde_json::from_str(r#"{"normal":[0.6,0,0.8],"tangent":[0,1,0]}"#).unwrap();
+        for up in [Up::Z, Up::Y, frame] {
             let c = Conventions { up, ..Conventions::default() };
-            assert_eq!(c.from_plugin(c.direction(d)), d);
+            assert!((c.from_plugin(c.direction(d)) - d).length() < 1e-15, "{up:?}");
         }
+        let of = Conventions { up: frame, ..Conventions::default() };
+        assert_eq!(of.direction(Direction::NORMAL), [0.6, 0.0, 0.8]);
+        assert_eq!(of.direction(Direction::new(1.0, 0.0, 0.0)), [0.0, 1.0, 0.0]);
+        let read = |text: &str| serde_json::from_str::<Up>(text);
+        assert_eq!((read("\"z\"").unwrap(), read("\"y\"").unwrap()), (Up::Z, Up::Y));
+        assert!(read(r#"{"normal":[0,0,2],"tangent":[1,0,0]}"#).is_err() && read("\"x\"").is_err());
         let y = Conventions { up: Up::Y, given: Given::Towards, ..Conventions::default() };
-        assert_eq!(y.direction(Direction::NORMAL), [0.0, 1.0, -0.0]);
+        assert_eq!(y.direction(Direction::NORMAL), [0.0, 1.0, 0.0]);
         assert_eq!(y.wo(d), [-0.36, -0.8, 0.48]);
         // Right-handed: the tangent, the normal and their cross product.
         let [t, n] = [y.direction(Direction::new(1.0, 0.0, 0.0)), y.direction(Direction::NORMAL)];

@@ -15,7 +15,7 @@ mod subject;
 mod wasm;
 mod wire;
 
-pub use conventions::{Conventions, Failure, Given, Up, Weight};
+pub use conventions::{Conventions, Failure, Frame, Given, Up, Weight};
 pub use instance::{Call, Created, Fault, Function, Instance};
 pub use library::work;
 pub use limits::Limits;

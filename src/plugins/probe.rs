@@ -144,8 +144,9 @@ fn draw(subject: &dyn Subject) -> Option<Vec<Draw>> {
 /// the declared ones they do not.
 fn frame(subject: &Foreign, declared: Conventions) -> Option<Conventions> {
     let claims = subject.describe().claims;
-    if claims.transmissive || claims.two_sided || !claims.reflective {
-        // Samples may lie anywhere.
+    let told = matches!(declared.up, Up::Frame(_));
+    if told || claims.transmissive || claims.two_sided || !claims.reflective {
+        // A frame is not guessed, and samples may lie anywhere.
         return None;
     }
     // Share of samples that lie on the side of wo; 0 where few draws are samples.

@@ -190,3 +190,12 @@ def test_wrong_results_of_scalars():
         with pytest.raises(ResultError) as e:
             call(s, name)
         assert told in str(e.value)
+
+
+def test_a_frame_of_a_scene_is_told_and_flags_follow_it() -> None:
+    frame = {"normal": [0.6, 0.0, 0.8], "tangent": [0.0, 1.0, 0.0]}
+    told = _promises.conventions({"up": frame}, "Paint")
+    assert told == {"up": frame}
+    for wrong in ({"normal": [0, 0, 1]}, {"normal": [0, 1], "tangent": [1, 0]}, {"normal": 3, "tangent": 4}, "x"):
+        with pytest.raises(GonioError, match="up is"):
+            _promises.conventions({"up": wrong}, "Paint")

@@ -7,7 +7,14 @@ follows = dict(word.split("=") for word in sys.argv[1].split(",") if word)
 declared = sys.argv[2] == "declared"
 weight, up = follows.get("weight", "f-cos-over-pdf"), follows.get("up", "z")
 given, failure = follows.get("given", "away"), follows.get("failure", "flags")
-normal = 2 if up == "z" else 1
+# Tangent, the direction at right angles, and normal.
+frames = {
+    "z": ([1, 0, 0], [0, 1, 0], [0, 0, 1]),
+    "y": ([1, 0, 0], [0, 0, -1], [0, 1, 0]),
+    "scene": ([0, 1, 0], [-0.8, 0, 0.6], [0.6, 0, 0.8]),
+}
+frame = frames[up]
+cos = lambda w: sum(a * b for a, b in zip(frame[2], w))
 
 
 def line(object):
@@ -16,7 +23,9 @@ def line(object):
 
 model = {"name": "lambert", "dimensions": 2, "claims": {"isotropic": True}}
 if declared:
-    model["conventions"] = follows
+    model["conventions"] = dict(follows)
+    if up == "scene":
+        model["conventions"]["up"] = {"normal": frame[2], "tangent": frame[0]}
 line({"protocol": 1, "models": [model]})
 for text in sys.stdin:
     q = json.loads(text)
@@ -27,9 +36,9 @@ for text in sys.stdin:
         line({})
         continue
     # A tenth of the draws is absorbed.
-    front = (q["wo"][normal] > 0) == (given == "away")
-    pdf = lambda w: 0.9 * max(w[normal], 0) / math.pi if front else 0
-    value = lambda w: 0.45 / math.pi if front and w[normal] > 0 else 0
+    front = (cos(q["wo"]) > 0) == (given == "away")
+    pdf = lambda w: 0.9 * max(cos(w), 0) / math.pi if front else 0
+    value = lambda w: 0.45 / math.pi if front and cos(w) > 0 else 0
     if q["call"] == "eval":
         line({"f": [value(w) for w in q["wi"]]})
     if q["call"] == "pdf":
@@ -38,9 +47,9 @@ for text in sys.stdin:
         out = {"wi": [], "weight": [], "pdf": [], "flags": []}
         for a, b in q["u"]:
             absorbed = b > 0.9 or not front
-            r, t, z = math.sqrt(a), 2 * math.pi * b / 0.9, math.sqrt(1 - a)
-            x, y = r * math.cos(t), r * math.sin(t)
-            wi = [x, y, z] if up == "z" else [x, z, -y]
+            r, phi, z = math.sqrt(a), 2 * math.pi * b / 0.9, math.sqrt(1 - a)
+            x, y = r * math.cos(phi), r * math.sin(phi)
+            wi = [x * t + y * s + z * n for t, s, n in zip(*frame)]
             p, f = pdf(wi), value(wi)
             weights = {"f-cos-over-pdf": f * z / (p or 1), "f-over-pdf": f / (p or 1), "f-cos": f * z, "f": f}
             out["wi"].append(wi)

@@ -2,8 +2,8 @@
 
 from __future__ import annotations
 
-from collections.abc import Mapping
-from typing import Any, Literal, TypedDict, get_args, get_type_hints
+from collections.abc import Mapping, Sequence
+from typing import Any, Literal, TypedDict, Union, get_args, get_type_hints
 
 from ._errors import GonioError, did_you_mean
 
@@ -40,6 +40,13 @@ class Claims(TypedDict, total=False):
     rng: Literal["external", "internal"]
 
 
+class Frame(TypedDict):
+    """Unit vectors at right angles."""
+
+    normal: Sequence[float]
+    tangent: Sequence[float]
+
+
 class Conventions(TypedDict, total=False):
     """Conventions of the code behind eval, pdf and sample; gonio converts. The first
     value of each is meant where it is left out."""
@@ -48,8 +55,9 @@ class Conventions(TypedDict, total=False):
     weight: Literal["f-cos-over-pdf", "f-over-pdf", "f-cos", "f"]
     #: How a draw without a sample is told.
     failure: Literal["flags", "zero-pdf", "zero-weight"]
-    #: Which axis is the normal; x is the tangent in both.
-    up: Literal["z", "y"]
+    #: Which axis is the normal, x being the tangent; or the frame that the code shades
+    #: with, in the space of a scene.
+    up: Union[Literal["z", "y"], Frame]
     #: Whether wo points away from the surface, or along the ray towards it.
     given: Literal["away", "towards"]
 
@@ -78,6 +86,10 @@ def _value(name: Any, value: Any, known: Mapping[str, Any], what: str, where: st
     if name not in known:
         raise GonioError(f"{where}: no {what} is called {name!r}; {did_you_mean(str(name), known)}")
     kind = known[name]
+    if name == "up" and isinstance(value, Mapping):
+        return _frame(value, where)
+    if name == "up":
+        kind = Literal["z", "y"]
     options = get_args(kind)
     if options:
         if value in options:
@@ -92,3 +104,14 @@ def _value(name: Any, value: Any, known: Mapping[str, Any], what: str, where: st
         return float(plain)
     expected = "True or False" if kind is bool else "a number"
     raise GonioError(f"{where}: {name} is {value!r} where {expected} is expected")
+
+
+def _frame(value: Mapping[Any, Any], where: str) -> object:
+    try:
+        frame = {name: [float(x) for x in value[name]] for name in ("normal", "tangent")}
+    except (KeyError, TypeError, ValueError):
+        frame = {}
+    if len(value) != 2 or any(len(vector) != 3 for vector in frame.values()) or not frame:
+        expected = '{"normal": [0, 0, 1], "tangent": [1, 0, 0]}'
+        raise GonioError(f"{where}: up is {value!r} where an axis or {expected} is expected")
+    return frame

@@ -68,7 +68,9 @@ class Subject:
         self.name = type(instance).__name__
         self.channels = channels
         self.dimensions = dimensions
-        self._up = 1 if conventions.get("up") == "y" else 2
+        up = conventions.get("up")
+        normal = up["normal"] if isinstance(up, dict) else [0, 1, 0] if up == "y" else [0, 0, 1]
+        self._normal = np.array(normal, float)
         self._towards = conventions.get("given") == "towards"
         found = {name: _function(instance, name) for name in ("eval", "pdf", "sample")}
         self._functions = {name: f for name, f in found.items() if f is not None}
@@ -110,8 +112,8 @@ class Subject:
         if flags is not None and np.asarray(flags).dtype == np.bool_:
             flags, valid = None, flags if valid is None else np.logical_and(flags, valid)
         if flags is None:
-            wo_up = -wo[self._up] if self._towards else wo[self._up]
-            other_side = wi[:, self._up] * wo_up < 0
+            wo_up = (-wo if self._towards else wo) @ self._normal
+            other_side = (wi @ self._normal) * wo_up < 0
             found: Array = np.where(other_side, TRANSMISSION | GLOSSY, REFLECTION | GLOSSY)
         elif np.ndim(flags) == 0:
             found = np.full(n, _numbers("sample() returned flags", [flags], 1)[0, 0])
