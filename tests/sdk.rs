@@ -316,3 +316,13 @@ fn new_says_what_it_wants_and_writes_over_nothing() {
     assert!(quiet.status.success() && quiet.stderr.is_empty());
     assert!(desk.path().join("a/b/bsdf.py").is_file());
 }
+
+#[test]
+fn the_python_package_passes_its_own_tests() {
+    let python = tools().python.join("python");
+    let mut pytest = Command::new(python);
+    pytest.args(["-m", "pytest", "-q", "-p", "no:cacheprovider"]).current_dir(root().join("sdk/python"));
+    let told = succeeds(pytest.env("GONIO", GONIO));
+    // With gonio at hand nothing is skipped.
+    assert!(told.contains(" passed") && !told.contains("skipped"), "{told}");
+}

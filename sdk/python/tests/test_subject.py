@@ -4,6 +4,8 @@ import numpy as np
 import pytest
 
 import gonio
+from gonio import _promises
+from gonio._errors import GonioError
 from gonio._model import Model
 from gonio._subject import ResultError
 
@@ -192,10 +194,17 @@ def test_wrong_results_of_scalars():
         assert told in str(e.value)
 
 
-def test_a_frame_of_a_scene_is_told_and_flags_follow_it() -> None:
+def test_a_frame_of_a_scene_is_told_and_flags_follow_it():
     frame = {"normal": [0.6, 0.0, 0.8], "tangent": [0.0, 1.0, 0.0]}
     told = _promises.conventions({"up": frame}, "Paint")
     assert told == {"up": frame}
     for wrong in ({"normal": [0, 0, 1]}, {"normal": [0, 1], "tangent": [1, 0]}, {"normal": 3, "tangent": 4}, "x"):
         with pytest.raises(GonioError, match="up is"):
             _promises.conventions({"up": wrong}, "Paint")
+    # Beside the normal of the frame, and opposite to it.
+    wi = np.array([[0.8, 0.0, 0.6], [-0.6, 0.0, -0.8]])
+    s = subject(
+        sample=lambda wo, u: (wi, np.ones(2), np.ones(2)), scalar=False, conventions={"up": frame}
+    )
+    flags = dict(s.call("sample", "radiance", np.array([0.6, 0.0, 0.8]), U[:2].copy()))["flags"]
+    assert list(np.ravel(flags)) == [gonio.REFLECTION | gonio.GLOSSY, gonio.TRANSMISSION | gonio.GLOSSY]
