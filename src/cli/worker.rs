@@ -2,6 +2,7 @@
 
 use super::error::CliError;
 use super::exit::Exit;
+use super::output::tell;
 use crate::plugins;
 use clap::Subcommand;
 use std::ffi::OsString;
@@ -37,8 +38,10 @@ pub fn work(args: &WorkerArgs) -> Result<Exit, CliError> {
     match &args.work {
         Work::Supervise { memory, command } => std::process::exit(plugins::supervise(command, *memory)),
         Work::Library { path } => {
-            plugins::work(path).map_err(|e| CliError::Internal(e.to_string()))?;
-            Ok(Exit::Passed)
+            // The last words of a plugin, which gonio shows.
+            let Err(e) = plugins::work(path) else { return Ok(Exit::Passed) };
+            tell(&e.to_string());
+            Ok(Exit::Subject)
         }
     }
 }

@@ -84,5 +84,5 @@ pub trait Instance: Send {
     /// Answers `call` into `answer`, which has [`Call::answer`] numbers.
     fn call(&mut self, call: &Call, answer: &mut [f64]) -> Result<(), Fault>;
     /// Gives a subject up.
-    fn destroy(&mut self, handle: u64);
+    fn destroy(&mut self, handle: u64) -> Result<(), Fault>;
 }

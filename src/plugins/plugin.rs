@@ -5,7 +5,7 @@ use super::instance::{Fault, Instance};
 use super::limits::Limits;
 use super::route::Route;
 use crate::bsdf::SubjectError;
-use std::collections::HashMap;
+use std::collections::{HashMap, HashSet};
 use std::sync::{Condvar, Mutex, MutexGuard, PoisonError};
 
 /// A subject is given up after so many instances ended under it: what crashes at
@@ -40,6 +40,8 @@ struct Pool {
     idle: Vec<Running>,
     busy: usize,
     ends: HashMap<u64, Vec<String>>,
+    /// Subjects that instances forget before they work again.
+    forgotten: HashSet<u64>,
 }
 
 impl Plugin {
@@ -68,6 +70,15 @@ impl Plugin {
         work: impl FnOnce(&mut Running) -> Result<T, Fault>,
     ) -> Result<T, SubjectError> {
         let mut lent = self.lend(subject)?;
+        if let Some(running) = &mut lent.running {
+            let stale: Vec<u64> = {
+                let pool = self.pool();
+                running.handles.keys().filter(|subject| pool.forgotten.contains(subject)).copied().collect()
+            };
+            if !running.forget(&stale) {
+                lent.running = None;
+            }
+        }
         let running = match &mut lent.running {
             Some(running) => running,
             none => {
@@ -118,14 +129,32 @@ impl Plugin {
         self.pool().ends.remove(&subject);
     }
 
-    /// Lets idle instances forget a subject.
+    /// Lets instances forget a subject: the idle ones now, the others before they work
+    /// again.
     pub fn forget(&self, subject: u64) {
         let mut pool = self.pool();
-        for running in &mut pool.idle {
-            if let Some(handle) = running.handles.remove(&subject) {
-                running.instance.destroy(handle);
-            }
+        pool.ends.remove(&subject);
+        if pool.busy > 0 {
+            pool.forgotten.insert(subject);
         }
+        let idle = std::mem::take(&mut pool.idle);
+        pool.busy += idle.len();
+        drop(pool);
+        // Nobody waits for the pool meanwhile.
+        for mut running in idle {
+            let alive = running.forget(&[subject]);
+            drop(Lent { plugin: self, running: alive.then_some(running) });
+        }
+    }
+}
+
+impl Running {
+    /// Whether it lives on without these subjects.
+    fn forget(&mut self, subjects: &[u64]) -> bool {
+        subjects.iter().all(|subject| match self.handles.remove(subject) {
+            Some(handle) => !matches!(self.instance.destroy(handle), Err(Fault::Ended(_))),
+            None => true,
+        })
     }
 }
 
@@ -142,6 +171,6 @@ impl Drop for Lent<'_> {
         pool.busy -= 1;
         pool.idle.extend(self.running.take());
         drop(pool);
-        self.plugin.free.notify_one();
+        self.plugin.free.notify_all();
     }
 }

@@ -7,9 +7,13 @@ use super::conventions::{Conventions, Failure, Given, Up, Weight};
 use super::subject::Foreign;
 use crate::bsdf::{Cosine, Direction, Precision, Samples, Subject, Transport};
 use crate::statistics::streams::StreamKey;
+use std::time::{Duration, Instant};
 
 /// Draws at each of the given directions.
 const DRAWS: usize = 64;
+
+/// What a probe may take: a slow plugin is left to the measurement.
+const LONGEST: Duration = Duration::from_secs(20);
 
 /// θ and φ of the given directions in degrees: generic ones.
 const GIVEN: [(f64, f64); 3] = [(25.0, 17.0), (50.0, 137.0), (70.0, 257.0)];
@@ -32,10 +36,11 @@ pub fn conventions(subject: &Foreign, declared: Conventions) -> (Conventions, Ve
     }
     let mut found = declared;
     let mut told = Vec::new();
-    if draw(subject).is_none() {
+    let deadline = Instant::now() + LONGEST;
+    if draw(subject, deadline).is_none() {
         return (declared, told);
     }
-    if let Some(other) = frame(subject, declared) {
+    if let Some(other) = frame(subject, declared, deadline) {
         if other.up != declared.up {
             let axis = |up| if up == Up::Z { "z" } else { "y" };
             let (is, said) = (axis(other.up), axis(declared.up));
@@ -50,7 +55,7 @@ pub fn conventions(subject: &Foreign, declared: Conventions) -> (Conventions, Ve
         }
         found = other;
     }
-    let Some(draws) = draw(&subject.under(found)) else { return (found, told) };
+    let Some(draws) = draw(&subject.under(found), deadline) else { return (found, told) };
     if found.failure == Failure::Flags && draws.iter().any(Draw::is_void) && draws.iter().any(Draw::is_good) {
         told.push(
             "some samples have weight 0 and pdf 0, and flags of a sample: declare `failure` = \"zero-pdf\", or \
@@ -60,7 +65,7 @@ pub fn conventions(subject: &Foreign, declared: Conventions) -> (Conventions, Ve
         found.failure = Failure::ZeroPdf;
     }
     let good: Vec<&Draw> = draws.iter().filter(|draw| draw.is_good()).collect();
-    if let Some(weight) = weight(subject, found, &good) {
+    if let Some(weight) = weight(subject, found, &good, deadline) {
         let (is, said) = (weight.word(), found.weight.word());
         told.push(format!("its weights are {is}, not {said}: declare `weight` = \"{is}\""));
         found.weight = weight;
@@ -108,16 +113,25 @@ fn random_numbers(k: usize, dimensions: usize) -> Vec<f64> {
 }
 
 /// `None` where it does not answer.
-fn draw(subject: &dyn Subject) -> Option<Vec<Draw>> {
+fn draw(subject: &dyn Subject, deadline: Instant) -> Option<Vec<Draw>> {
     let description = subject.describe();
     let channels = description.channels.len();
     let mut draws = Vec::new();
     for (k, wo) in given(subject).into_iter().enumerate() {
+        if Instant::now() > deadline {
+            return None;
+        }
         let mut samples = Samples::default();
         samples.clear(channels);
         let u = random_numbers(k, description.dimensions);
         if subject.sample(wo, &u, Transport::Radiance, &mut samples).is_err() {
             return None;
+        }
+        // What is no sample has no direction to ask for.
+        for (wi, lobe) in samples.wi.iter_mut().zip(&samples.lobe) {
+            if !lobe.is_valid() {
+                *wi = wo;
+            }
         }
         let n = samples.len();
         let (mut eval, mut pdf) = (vec![0.0; n * channels], vec![0.0; n]);
@@ -142,7 +156,7 @@ fn draw(subject: &dyn Subject) -> Option<Vec<Draw>> {
 
 /// Other axes and senses, where samples come under them as they should, and under
 /// the declared ones they do not.
-fn frame(subject: &Foreign, declared: Conventions) -> Option<Conventions> {
+fn frame(subject: &Foreign, declared: Conventions, deadline: Instant) -> Option<Conventions> {
     let claims = subject.describe().claims;
     let told = matches!(declared.up, Up::Frame(_));
     if told || claims.transmissive || claims.two_sided || !claims.reflective {
@@ -151,7 +165,7 @@ fn frame(subject: &Foreign, declared: Conventions) -> Option<Conventions> {
     }
     // Share of samples that lie on the side of wo; 0 where few draws are samples.
     let right = |conventions: Conventions| -> f64 {
-        let draws = draw(&subject.under(conventions)).unwrap_or_default();
+        let draws = draw(&subject.under(conventions), deadline).unwrap_or_default();
         let samples: Vec<&Draw> = draws.iter().filter(|d| d.continuous && d.returned_pdf > 0.0).collect();
         if samples.len() * 4 < draws.len().max(1) {
             return 0.0;
@@ -172,7 +186,7 @@ fn frame(subject: &Foreign, declared: Conventions) -> Option<Conventions> {
 }
 
 /// Another convention of weights that holds where the declared one does not.
-fn weight(subject: &Foreign, found: Conventions, draws: &[&Draw]) -> Option<Weight> {
+fn weight(subject: &Foreign, found: Conventions, draws: &[&Draw], deadline: Instant) -> Option<Weight> {
     let description = subject.describe();
     let tolerance = match description.precision {
         Precision::F64 => 1e-6,
@@ -206,16 +220,17 @@ fn weight(subject: &Foreign, found: Conventions, draws: &[&Draw]) -> Option<Weig
             | (Weight::FCos, Weight::F)
             | (Weight::F, Weight::FCos)
     );
-    (!by_cosine || description.claims.reciprocal && is_reciprocal(subject, &telling, tolerance))
+    (!by_cosine || description.claims.reciprocal && is_reciprocal(subject, &telling, tolerance, deadline))
         .then_some(other)
 }
 
 /// Whether eval, as declared, is the same both ways at most of these draws.
-fn is_reciprocal(subject: &Foreign, draws: &[&&Draw], tolerance: f64) -> bool {
+fn is_reciprocal(subject: &Foreign, draws: &[&&Draw], tolerance: f64, deadline: Instant) -> bool {
     let description = subject.describe();
     let mut value = vec![0.0; description.channels.len()];
     let agreeing = draws.iter().filter(|d| {
-        let answered = subject.eval(d.wi, &[d.wo], Transport::Radiance, &mut value).is_ok();
+        let answered =
+            Instant::now() < deadline && subject.eval(d.wi, &[d.wo], Transport::Radiance, &mut value).is_ok();
         let (there, back) = match description.claims.cosine {
             Cosine::Included => (d.eval / d.wi.abs_cos_theta(), value[0] / d.wo.abs_cos_theta()),
             Cosine::Excluded => (d.eval, value[0]),

@@ -146,6 +146,9 @@ pub(super) const SUBJECT_KEYS: [&str; 12] = [
     "label",
 ];
 
+/// Keys of a `[[subject]]` that say what is measured.
+const ROUTES: [&str; 4] = ["use", "process", "library", "wasm"];
+
 impl SuiteFile {
     /// A suite without subjects, all at its defaults.
     pub fn new(name: &str, source_name: &str, text: &str) -> Self {
@@ -276,6 +279,13 @@ impl SuiteFile {
             let _: Option<()> = reader.wrong_type("subject", item, "tables: [[subject]]");
             return;
         };
+        let ways: Vec<_> = entries(table).into_iter().filter(|(key, ..)| ROUTES.contains(key)).collect();
+        if let [(first, ..), (second, span, _), ..] = &ways[..] {
+            let message = format!("a [[subject]] has `{first}` and `{second}`");
+            let help = "one of them says what is measured: leave the other out";
+            reader.note(Mistake::new(span.clone(), message, "the second").help(help));
+            return;
+        }
         let mut model = None;
         let mut named = false;
         let mut entry = Entry {
@@ -294,7 +304,7 @@ impl SuiteFile {
             match key {
                 "use" => (named, model) = (true, reader.text(key, value)),
                 "file" => {
-                    if !table.contains_key("use") {
+                    if !ROUTES.iter().any(|key| table.contains_key(*key)) {
                         (named, model) = (true, Some(Spanned::new(value.span(), MEASURED.into())));
                     }
                     let files = self.read_files(reader, value);
@@ -371,7 +381,9 @@ impl SuiteFile {
     fn read_plugin(&self, reader: &mut Reader, key: &str, value: &Node) -> Option<Spanned<String>> {
         let text = reader.text(key, value)?;
         let path = self.beside(text.get_ref());
-        let file = path.split('#').next().unwrap_or(&path);
+        let word = text.get_ref();
+        let model = word.rsplit_once('#').map_or(0, |(file, _)| word.len() - file.len());
+        let file = &path[..path.len() - model];
         let right = |named: &Option<Named>| match key {
             "library" => matches!(named, Some(Named::Library(_))),
             _ => matches!(named, Some(Named::Wasm(_))),
@@ -410,7 +422,10 @@ impl SuiteFile {
             // A command is told from a model by its path, or by having arguments.
             match which(program) {
                 Some(path) => *program = path,
-                None if Path::new(&self.beside(program)).is_file() => {}
+                None if Path::new(&self.beside(program)).is_file() => {
+                    let path = Path::new(".").join(self.beside(program));
+                    *program = path.display().to_string();
+                }
                 None => {
                     let message = format!("no program `{program}` is in PATH or beside the suite");
                     reader.note(Mistake::new(value.span(), message, "this command"));
@@ -429,7 +444,12 @@ impl SuiteFile {
             }
             _ => String::new(),
         };
-        Some(Spanned::new(value.span(), shell_words::join(words) + &model))
+        // A path by itself is no command to be quoted.
+        let command = match &words[..] {
+            [path] if Path::new(path).is_file() => path.clone(),
+            words => shell_words::join(words),
+        };
+        Some(Spanned::new(value.span(), command + &model))
     }
 
     /// A subject in a file beside the suite; others as they are written.

@@ -105,8 +105,10 @@ fn pointer(handle: u64) -> *mut c_void {
 impl Instance for Loaded {
     fn describe(&mut self) -> Result<String, Fault> {
         // SAFETY: null stands for all models; the string lives until the next call.
-        unsafe { text((self.0.describe)(std::ptr::null_mut())) }
-            .ok_or_else(|| Fault::Ended("gonio_describe(NULL) returned NULL".into()))
+        unsafe { text((self.0.describe)(std::ptr::null_mut())) }.ok_or_else(|| {
+            let why = self.error().unwrap_or_else(|| "gonio_describe(NULL) returned NULL".into());
+            Fault::Ended(why)
+        })
     }
 
     fn create(&mut self, model: &str, parameters: &str) -> Result<Created, Fault> {
@@ -160,10 +162,11 @@ impl Instance for Loaded {
         }
     }
 
-    fn destroy(&mut self, handle: u64) {
+    fn destroy(&mut self, handle: u64) -> Result<(), Fault> {
         if let Some(destroy) = self.0.destroy {
             // SAFETY: the handle is one that it gave, and is not used again.
             unsafe { destroy(pointer(handle)) };
         }
+        Ok(())
     }
 }

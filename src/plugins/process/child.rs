@@ -66,6 +66,10 @@ impl Child {
     }
 
     fn request(&mut self, request: &Request, answer: &mut [f64]) -> Result<Reply, Fault> {
+        if self.read.iter().any(|b| !b.is_ascii_whitespace()) {
+            return Err(self.ended(&format!("wrote more than was asked for, before {}", request.name())));
+        }
+        self.read.clear();
         let (head, payload) = self.wire.ask(request);
         let wire = self.wire;
         let limit = self.limits.call;
@@ -100,9 +104,10 @@ impl Child {
             }
             let left = deadline.saturating_duration_since(Instant::now());
             if left.is_zero() {
+                let option = if limit == START { "" } else { " (--call-limit)" };
                 let limit = limit.as_secs_f64();
                 return Err(self.ended(&match self.input {
-                    Some(_) => format!("did not answer {what} within {limit} s (--call-limit)"),
+                    Some(_) => format!("did not answer {what} within {limit} s{option}"),
                     None => format!("closed its standard input and did not answer {what}"),
                 }));
             }
@@ -156,7 +161,9 @@ impl Child {
     /// Reads what there is on standard error.
     fn listen(&mut self) {
         let mut bytes = [0; 4096];
-        while let Some(pipe) = &self.errors {
+        // No more than the pipe holds: who writes without end must not keep gonio here.
+        for _ in 0..PIPE / bytes.len() {
+            let Some(pipe) = &self.errors else { return };
             match rustix::io::read(pipe, &mut bytes[..]) {
                 Ok(0) => self.errors = None,
                 Ok(n) => self.said.push(&bytes[..n]),
@@ -236,8 +243,8 @@ impl Instance for Child {
         self.request(&Request::Call(call), answer).map(drop)
     }
 
-    fn destroy(&mut self, handle: u64) {
-        let _ = self.request(&Request::Destroy(handle), &mut []);
+    fn destroy(&mut self, handle: u64) -> Result<(), Fault> {
+        self.request(&Request::Destroy(handle), &mut []).map(drop)
     }
 }
 

@@ -35,6 +35,20 @@ pub fn supervise(command: &[OsString], memory: u64) -> i32 {
         return CANNOT_START;
     }
     let Some((program, arguments)) = command.split_first() else { return CANNOT_START };
+    // Before the plugin takes what the memory is limited to.
+    let watching = std::thread::Builder::new().spawn(|| {
+        let nobody_reads = || {
+            let mut pipe = [PollFd::from_borrowed_fd(rustix::stdio::stderr(), PollFlags::empty())];
+            poll(&mut pipe, None).is_ok() && pipe[0].revents().contains(PollFlags::ERR)
+        };
+        while !nobody_reads() {}
+        end_descendants();
+        std::process::exit(0);
+    });
+    if let Err(e) = watching {
+        eprintln!("gonio cannot watch over the plugin: {e}");
+        return CANNOT_START;
+    }
     let child = match Command::new(program).args(arguments).spawn() {
         Ok(child) => Pid::from_child(&child),
         Err(e) => {
@@ -47,15 +61,6 @@ pub fn supervise(command: &[OsString], memory: u64) -> i32 {
         let _ = rustix::stdio::dup2_stdin(&null);
         let _ = rustix::stdio::dup2_stdout(&null);
     }
-    std::thread::spawn(|| {
-        let nobody_reads = || {
-            let mut pipe = [PollFd::from_borrowed_fd(rustix::stdio::stderr(), PollFlags::empty())];
-            poll(&mut pipe, None).is_ok() && pipe[0].revents().contains(PollFlags::ERR)
-        };
-        while !nobody_reads() {}
-        end_descendants();
-        std::process::exit(0);
-    });
     let status = loop {
         match waitpid(None, WaitOptions::empty()) {
             Ok(Some((pid, status))) if pid == child => break status,
@@ -114,13 +119,14 @@ fn descendants() -> Vec<i32> {
     let mut children: HashMap<i32, Vec<i32>> = HashMap::new();
     for entry in std::fs::read_dir("/proc").into_iter().flatten().flatten() {
         let Some(pid) = entry.file_name().to_str().and_then(|name| name.parse().ok()) else { continue };
-        let Ok(stat) = std::fs::read_to_string(entry.path().join("stat")) else { continue };
+        let Ok(stat) = std::fs::read(entry.path().join("stat")) else { continue };
+        let stat = String::from_utf8_lossy(&stat);
         // `pid (name) state parent …`, where the name may hold anything.
         let Some((_, rest)) = stat.rsplit_once(')') else { continue };
-        let mut words = rest.split_ascii_whitespace();
-        if let (Some(state), Some(Ok(parent))) = (words.next(), words.next().map(str::parse))
-            && state != "Z"
-        {
+        let words: Vec<&str> = rest.split_ascii_whitespace().collect();
+        // A zombie with threads has only ended its first.
+        let dead = words.first() == Some(&"Z") && words.get(17).is_none_or(|threads| *threads <= "1");
+        if let (false, Some(Ok(parent))) = (dead, words.get(1).map(|word| word.parse())) {
             children.entry(parent).or_default().push(pid);
         }
     }

@@ -228,10 +228,9 @@ impl Instance for Running {
         Ok(())
     }
 
-    fn destroy(&mut self, handle: u64) {
+    fn destroy(&mut self, handle: u64) -> Result<(), Fault> {
         let destroy = self.exports.destroy;
-        // What goes wrong is told by the next call, which cannot be made.
-        let _ = self.run(&destroy, handle as u32 as i32, Doing::Destroy);
+        self.run(&destroy, handle as u32 as i32, Doing::Destroy).map(drop)
     }
 }
 

@@ -25,6 +25,9 @@ pub(super) fn ask(request: &Request) -> Vec<u8> {
 
 /// The first line, if it is there.
 pub(super) fn take_line(read: &mut Vec<u8>) -> Result<Option<String>, String> {
+    // Blank lines say nothing.
+    let blank = read.iter().position(|b| !b.is_ascii_whitespace()).unwrap_or(read.len());
+    read.drain(..blank);
     let Some(end) = read.iter().position(|b| *b == b'\n') else {
         return if read.len() > LONGEST {
             Err(format!("it wrote a line of more than {LONGEST} bytes, which begins with `{}`", shown(read)))
@@ -34,9 +37,6 @@ pub(super) fn take_line(read: &mut Vec<u8>) -> Result<Option<String>, String> {
     };
     let line = String::from_utf8_lossy(&read[..end]).into_owned();
     read.drain(..=end);
-    if line.trim().is_empty() {
-        return take_line(read);
-    }
     if !line.trim_start().starts_with('{') {
         let line = shown(line.as_bytes());
         return Err(format!(

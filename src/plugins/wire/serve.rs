@@ -33,6 +33,10 @@ struct Asked {
 /// Where the pipe is broken, or the instance has no description.
 pub fn serve(instance: &mut dyn Instance, mut input: impl Read, mut output: impl Write) -> io::Result<()> {
     let text = instance.describe().map_err(|fault| io::Error::other(fault.to_string()))?;
+    if text.len() > LONGEST {
+        let length = text.len();
+        return Err(io::Error::other(format!("its description has {length} bytes; {LONGEST} at most")));
+    }
     // What is wrong with it the other end says.
     let hello = description::hello(&text).ok();
     let channels = |model: &str, own: Option<&str>| {
@@ -71,7 +75,8 @@ pub fn serve(instance: &mut dyn Instance, mut input: impl Read, mut output: impl
                     channels: channels_of.get(&asked.handle).copied().unwrap_or(1),
                     input: &numbers,
                 };
-                answer.resize(call.answer(), 0.0);
+                // What the library leaves out is no number, as it is in process.
+                answer.resize(call.answer(), f64::NAN);
                 instance.call(&call, &mut answer).map(|()| json!({}))
             }
             ("create", _) => instance.create(&asked.model, &asked.parameters.to_string()).map(|created| {
@@ -81,10 +86,7 @@ pub fn serve(instance: &mut dyn Instance, mut input: impl Read, mut output: impl
                 let own = own.map(|text| serde_json::from_str(text).unwrap_or_else(|_| Value::from(text)));
                 json!({"handle": created.handle, "describe": own})
             }),
-            ("destroy", _) => {
-                instance.destroy(asked.handle);
-                Ok(json!({}))
-            }
+            ("destroy", _) => instance.destroy(asked.handle).map(|()| json!({})),
             (other, _) => Err(Fault::Refused(format!("`{other}` is no call"))),
         };
         let mut reply = reply.unwrap_or_else(|fault| {

@@ -39,7 +39,7 @@ fn answers_all_calls() {
     assert_eq!(rest[..2], [0.5, 0.5]);
     assert_eq!(rest[2..4], [wi[2] * FRAC_1_PI, FRAC_1_PI]);
     assert_eq!(rest[4..], [5.0, 5.0]);
-    it.destroy(1);
+    it.destroy(1).unwrap();
 }
 
 #[test]
@@ -113,6 +113,6 @@ fn damaged_modules_do_no_harm() {
         let mut answer = [0.0; 12];
         let _ = it.call(&call(Function::Sample, 2, &[0.5; 4]), &mut answer);
         let _ = it.call(&call(Function::Eval, 2, &[0.5; 6]), &mut answer[..2]);
-        it.destroy(1);
+        it.destroy(1).unwrap();
     }
 }
