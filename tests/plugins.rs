@@ -141,6 +141,9 @@ fn a_program_that_breaks_the_wire() {
         ("late-noise", "json-lines", "`debugging…"),
         ("garbage", "frames", "fa fb fc fd fe ff"),
         ("half", "frames", "ended with exit code 3 in eval()"),
+        // In words that depend on whether the second comes before the next call.
+        ("twice", "frames", "E error"),
+        ("twice", "json-lines", "E error"),
         ("refuse", "frames", "wo is too steep"),
         ("refuse", "json-lines", "wo is too steep"),
     ] {
@@ -304,4 +307,21 @@ fn a_frame_of_a_scene_is_turned() {
     let run = Sandbox::new("scene").check(&subject, &["--theta", "40", "--samples", "2^15", "--detect", "1"]);
     assert_eq!(run.code, Some(0), "{}", run.text);
     assert!(run.text.contains(" 0 failed") && !run.text.contains("warning"), "{}", run.text);
+}
+
+#[test]
+fn blank_lines_say_nothing() {
+    let subject = script("json-lines blank");
+    let run =
+        Sandbox::new("blank").check(&subject, &["--theta", "60", "--samples", "2^14", "--check", "energy"]);
+    assert_eq!(run.code, Some(0), "{}", run.text);
+}
+
+#[test]
+fn a_subject_is_named_in_one_way() {
+    let sandbox = Sandbox::new("two-ways");
+    let text = format!("[[subject]]\nuse = \"lambert\"\nlibrary = \"{}\"\n", library("hostile").display());
+    std::fs::write(sandbox.folder().join("suite.toml"), text).unwrap();
+    let run = sandbox.gonio(&["run", "suite.toml"]);
+    assert!(run.code == Some(2) && run.flat.contains("has `use` and `library`"), "{}", run.text);
 }

@@ -66,6 +66,10 @@ impl Child {
     }
 
     fn request(&mut self, request: &Request, answer: &mut [f64]) -> Result<Reply, Fault> {
+        // An answer too many would be taken for that of this call.
+        if self.read() == Some(0) {
+            return Err(self.gone(&request.name()));
+        }
         if self.read.iter().any(|b| !b.is_ascii_whitespace()) {
             return Err(self.ended(&format!("wrote more than was asked for, before {}", request.name())));
         }
@@ -151,10 +155,17 @@ impl Child {
         if !output {
             return true;
         }
+        self.read() != Some(0)
+    }
+
+    /// Reads what there is of its output: how much, 0 at its end, `None` if nothing is
+    /// there yet.
+    fn read(&mut self) -> Option<usize> {
         self.read.reserve(PIPE);
         match rustix::io::read(&self.output, rustix::buffer::spare_capacity(&mut self.read)) {
-            Ok(n) => n > 0,
-            Err(e) => matches!(e, Errno::INTR | Errno::AGAIN),
+            Ok(n) => Some(n),
+            Err(Errno::INTR | Errno::AGAIN) => None,
+            Err(_) => Some(0),
         }
     }
 

@@ -55,6 +55,8 @@ children = []
 def misbehave():
     if deed == "late-noise":
         print("debugging…", flush=True)
+    if deed == "blank":
+        out.write(b"\n" * 300_000)
     if deed == "garbage":
         out.write(bytes(range(250, 256)) * 100)
         out.flush()
@@ -122,6 +124,8 @@ while (q := asked()) is not None:
             line({"error": "wo is too steep"}) if wire == "json-lines" else frame({"error": "wo is too steep"})
             continue
         answer({"f": f})
+        if deed == "twice":
+            answer({"f": f})
     if call == "pdf":
         answer({"pdf": [w[2] / math.pi if front and w[2] > 0 else 0 for w in q["wi"]]})
     if call == "sample":
