@@ -113,6 +113,6 @@ fn damaged_modules_do_no_harm() {
         let mut answer = [0.0; 12];
         let _ = it.call(&call(Function::Sample, 2, &[0.5; 4]), &mut answer);
         let _ = it.call(&call(Function::Eval, 2, &[0.5; 6]), &mut answer[..2]);
-        it.destroy(1).unwrap();
+        let _ = it.destroy(1);
     }
 }
