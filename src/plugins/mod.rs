@@ -20,5 +20,5 @@ pub use instance::{Call, Created, Fault, Function, Instance};
 pub use library::work;
 pub use limits::Limits;
 pub use open::Plugins;
-pub use process::{set_gonio, supervise};
+pub use process::{in_path, set_gonio, supervise};
 pub use route::Named;

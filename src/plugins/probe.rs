@@ -37,10 +37,8 @@ pub fn conventions(subject: &Foreign, declared: Conventions) -> (Conventions, Ve
     let mut found = declared;
     let mut told = Vec::new();
     let deadline = Instant::now() + LONGEST;
-    if draw(subject, deadline).is_none() {
-        return (declared, told);
-    }
-    if let Some(other) = frame(subject, declared, deadline) {
+    let Some(mut draws) = draw(subject, deadline) else { return (declared, told) };
+    if let Some((other, theirs)) = frame(subject, declared, &draws, deadline) {
         if other.up != declared.up {
             let axis = |up| if up == Up::Z { "z" } else { "y" };
             let (is, said) = (axis(other.up), axis(declared.up));
@@ -53,9 +51,8 @@ pub fn conventions(subject: &Foreign, declared: Conventions) -> (Conventions, Ve
                 "it samples only if the given direction points {is} and not {said}: declare `given` = \"{is}\""
             ));
         }
-        found = other;
+        (found, draws) = (other, theirs);
     }
-    let Some(draws) = draw(&subject.under(found), deadline) else { return (found, told) };
     if found.failure == Failure::Flags && draws.iter().any(Draw::is_void) && draws.iter().any(Draw::is_good) {
         told.push(
             "some samples have weight 0 and pdf 0, and flags of a sample: declare `failure` = \"zero-pdf\", or \
@@ -154,35 +151,41 @@ fn draw(subject: &dyn Subject, deadline: Instant) -> Option<Vec<Draw>> {
     Some(draws)
 }
 
-/// Other axes and senses, where samples come under them as they should, and under
-/// the declared ones they do not.
-fn frame(subject: &Foreign, declared: Conventions, deadline: Instant) -> Option<Conventions> {
+/// Other axes and senses and the draws under them, where samples come as they should and
+/// under the declared ones they do not.
+fn frame(
+    subject: &Foreign,
+    declared: Conventions,
+    draws: &[Draw],
+    deadline: Instant,
+) -> Option<(Conventions, Vec<Draw>)> {
     let claims = subject.describe().claims;
     let told = matches!(declared.up, Up::Frame(_));
     if told || claims.transmissive || claims.two_sided || !claims.reflective {
         // A frame is not guessed, and samples may lie anywhere.
         return None;
     }
-    // Share of samples that lie on the side of wo; 0 where few draws are samples.
-    let right = |conventions: Conventions| -> f64 {
-        let draws = draw(&subject.under(conventions), deadline).unwrap_or_default();
-        let samples: Vec<&Draw> = draws.iter().filter(|d| d.continuous && d.returned_pdf > 0.0).collect();
-        if samples.len() * 4 < draws.len().max(1) {
-            return 0.0;
-        }
-        samples.iter().filter(|d| d.wi.z > 0.0).count() as f64 / samples.len() as f64
-    };
     // Half of them where the normal is another axis.
-    if right(declared) > 0.75 {
+    if above(draws) > 0.75 {
         return None;
     }
     let others =
         [Up::Z, Up::Y].into_iter().flat_map(|up| [Given::Away, Given::Towards].map(|given| (up, given)));
     let others = others.map(|(up, given)| Conventions { up, given, ..declared }).filter(|c| *c != declared);
-    let best = others.map(|c| (c, right(c))).filter(|(_, right)| *right > MOST);
+    let drawn = others.filter_map(|c| Some((c, draw(&subject.under(c), deadline)?)));
     // Changes of one thing come before changes of both.
-    best.min_by_key(|(c, _)| usize::from(c.up != declared.up) + usize::from(c.given != declared.given))
-        .map(|(c, _)| c)
+    drawn
+        .filter(|(_, draws)| above(draws) > MOST)
+        .min_by_key(|(c, _)| usize::from(c.up != declared.up) + usize::from(c.given != declared.given))
+}
+
+/// Share of samples that lie above the surface; 0 where few draws are samples.
+fn above(draws: &[Draw]) -> f64 {
+    let samples: Vec<&Draw> = draws.iter().filter(|d| d.continuous && d.returned_pdf > 0.0).collect();
+    if samples.len() * 4 < draws.len().max(1) {
+        return 0.0;
+    }
+    samples.iter().filter(|d| d.wi.z > 0.0).count() as f64 / samples.len() as f64
 }
 
 /// Another convention of weights that holds where the declared one does not.

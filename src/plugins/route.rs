@@ -31,8 +31,8 @@ pub enum Named {
 }
 
 impl Named {
-    /// What `text` names: a file by its name's ending, its first bytes or its
-    /// permissions, or a command with arguments. `None` if it is none of these.
+    /// What `text` names: a file by its name's ending or its permissions, or
+    /// a command with arguments. `None` if it is none of these.
     pub fn of(text: &str) -> Option<Self> {
         let path = Path::new(text);
         if path.is_file() {

@@ -6,7 +6,7 @@ use super::promises::{claims, waivers};
 use super::reader::{Node, Reader, azimuth, entries, fraction, polar, positive};
 use crate::bsdf::{ClaimsPatch, Transport};
 use crate::checks;
-use crate::plugins::Named;
+use crate::plugins::{Named, in_path};
 use crate::registry::{MEASURED, Value, nearest};
 use std::path::Path;
 use std::time::Duration;
@@ -420,8 +420,8 @@ impl SuiteFile {
         let program = words.first_mut()?;
         if !program.contains('/') {
             // A command is told from a model by its path, or by having arguments.
-            match which(program) {
-                Some(path) => *program = path,
+            match in_path(program) {
+                Some(path) => *program = path.display().to_string(),
                 None if Path::new(&self.beside(program)).is_file() => {
                     let path = Path::new(".").join(self.beside(program));
                     *program = path.display().to_string();
@@ -505,13 +505,6 @@ pub fn mebibytes(mib: f64) -> Result<f64, String> {
     } else {
         Err(format!("{mib} MiB is no memory for a plugin; type for example 4096"))
     }
-}
-
-/// The path of a program that is in PATH.
-fn which(program: &str) -> Option<String> {
-    let paths = std::env::var_os("PATH")?;
-    let found = std::env::split_paths(&paths).map(|folder| folder.join(program)).find(|path| path.is_file());
-    found.map(|path| path.display().to_string())
 }
 
 fn cover(reader: &mut Reader, value: &Node) -> Option<Cover> {

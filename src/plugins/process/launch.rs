@@ -20,12 +20,16 @@ fn gonio() -> Result<PathBuf, String> {
     if let Some(path) = GONIO.get() {
         return Ok(path.clone());
     }
-    let paths = std::env::var_os("PATH").unwrap_or_default();
-    let here = std::env::split_paths(&paths).map(|folder| folder.join("gonio")).find(|path| path.is_file());
-    here.ok_or_else(|| {
+    in_path("gonio").ok_or_else(|| {
         "a plugin runs under the `gonio` command, which is not in PATH; `cargo install gonio` puts it there"
             .into()
     })
+}
+
+/// Where PATH has this program.
+pub fn in_path(program: &str) -> Option<PathBuf> {
+    let paths = std::env::var_os("PATH")?;
+    std::env::split_paths(&paths).map(|folder| folder.join(program)).find(|path| path.is_file())
 }
 
 /// What is started.

@@ -6,5 +6,5 @@ mod launch;
 mod supervise;
 
 pub use child::Child;
-pub use launch::{Launch, set_gonio};
+pub use launch::{Launch, in_path, set_gonio};
 pub use supervise::supervise;
