@@ -22,6 +22,7 @@ fn plan(cases: impl IntoIterator<Item = (f64, f64)>, samples: u64, checks: &[&st
         Arc::new(Case {
             group: "ggx".into(),
             spelling: format!("ggx-{alpha}"),
+            source: None,
             subject: Arc::new(ggx(alpha)),
             parameters: Default::default(),
             theta_deg: theta,

@@ -97,6 +97,7 @@ pub fn measure<S: Subject>(bsdf: &S, settings: Settings, time_cap: Duration) -> 
                 cases.push(Arc::new(Case {
                     group: name.clone(),
                     spelling: name.clone(),
+                    source: None,
                     subject: subject.clone(),
                     parameters: Parameters::default(),
                     theta_deg: theta,

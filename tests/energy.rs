@@ -25,6 +25,7 @@ fn worst_furnace(spellings: impl Iterator<Item = String>, thetas: &[f64]) -> (f6
             cases.push(Arc::new(Case {
                 group: spelling.clone(),
                 spelling: spelling.clone(),
+                source: None,
                 subject: resolved.subject.clone(),
                 parameters: resolved.parameters.clone(),
                 theta_deg: *theta,

@@ -141,7 +141,8 @@ fn a_claim_that_does_not_hold_fails() {
 #[test]
 fn a_waived_failure_is_waived_in_sight() {
     let mut waived = case("waived", Arc::new(Ggx::new(0.5, Bug::FresnelAtNormal)), 60.0, 1 << 16);
-    waived.waivers = vec![Waiver { check: "reciprocity".into(), because: "a coat".into() }];
+    waived.waivers =
+        vec![Waiver { check: "reciprocity".into(), because: "a coat".into(), ..Waiver::default() }];
     let results = measure(vec![waived]);
     assert_eq!(verdicts(&results)[&Verdict::Waived], BTreeSet::from(["reciprocity"]));
     let finding = results[0].findings.iter().find(|f| f.check == "reciprocity").unwrap();

@@ -77,6 +77,7 @@ fn measure(
         Arc::new(Case {
             group: name.into(),
             spelling: name.into(),
+            source: None,
             subject: subject.clone(),
             parameters: Default::default(),
             theta_deg: *theta,

@@ -209,16 +209,12 @@ fn run(
         plot: &|case| plots.get(&case.index).cloned(),
     };
     let diagnosed = diagnose_all(&results, &request.explanations, &options);
-    let pictures = match (&folder, request.plots.which()) {
-        (Some(folder), Some(_)) => draw_diagnoses(folder, &diagnosed),
-        _ => Ok(BTreeMap::new()),
-    };
-    let (mut pictures, unwritten) = match pictures {
-        Ok(pictures) => (pictures, unwritten),
-        Err(error) => (BTreeMap::new(), unwritten.or(Some(error))),
-    };
     let mut diagnoses = Diagnosis::all(&results, diagnosed);
-    diagnoses.iter_mut().for_each(|d| d.plot = pictures.remove(&d.subject));
+    let drawn = match (&folder, request.plots.which()) {
+        (Some(folder), Some(_)) => draw_diagnoses(folder, &mut diagnoses),
+        _ => Ok(()),
+    };
+    let unwritten = unwritten.or(drawn.err());
     let report = Report::new(plan, &results, started, &files).diagnosed(diagnoses);
     let written = folder.as_ref().map(|folder| write_report(folder, &report)).transpose();
     if !voice.quiet {

@@ -4,6 +4,8 @@ use super::counts::Counts;
 use super::textbook::Textbook;
 use super::view::{Seen, View};
 use crate::bsdf::Direction;
+use schemars::JsonSchema;
+use serde::{Deserialize, Serialize};
 
 /// Leaves are near the plane whose middle is within so many degrees of it.
 const NEAR: f64 = 8.0;
@@ -14,7 +16,7 @@ const MOST_BINS: usize = 5;
 const ENOUGH: f64 = 16.0;
 
 /// Leaves near the plane with similar θ.
-#[derive(Clone, Copy, Debug, Default, PartialEq)]
+#[derive(Clone, Copy, Debug, Default, PartialEq, Serialize, Deserialize, JsonSchema)]
 pub struct Bin {
     /// The mean θ in degrees, below 0 on the side of wo; beyond 90 it is transmitted.
     pub theta_deg: f64,
@@ -32,7 +34,7 @@ impl Bin {
 }
 
 /// Along the plane of incidence of one wo.
-#[derive(Clone, Debug, PartialEq)]
+#[derive(Clone, Debug, PartialEq, Serialize, Deserialize, JsonSchema)]
 pub struct Profile {
     /// The given direction.
     pub wo: Direction,

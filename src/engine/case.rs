@@ -7,7 +7,7 @@ use crate::checks::{self, Check, Judgement, Outcome, Terms, Verdict};
 use crate::evidence::{BLOCK, Company, Evidence, Gatherer, Halt, Measurement, Meter, Setup, Watch};
 use crate::statistics::budget;
 use crate::statistics::streams::StreamKey;
-use crate::suite::Case;
+use crate::suite::{Case, Waiver};
 use std::collections::BTreeSet;
 use std::sync::Arc;
 use std::time::Instant;
@@ -117,8 +117,9 @@ pub fn run_case<'a>(
     };
     findings.sort_by_key(|f| checks::all().iter().position(|c| c.id() == f.check));
     for f in &mut findings {
-        let waiver = case.waivers.iter().find(|w| w.check == f.check);
-        if let (Verdict::Fail, Some(waiver)) = (f.outcome.verdict, waiver) {
+        let effect = f.outcome.effect.as_ref().map(|e| e.value.0);
+        let about = |w: &&Waiver| w.is_about(&case.spelling, f.check) && w.covers(effect);
+        if let (Verdict::Fail, Some(waiver)) = (f.outcome.verdict, case.waivers.iter().find(about)) {
             f.outcome.verdict = Verdict::Waived;
             f.waived_because = Some(waiver.because.clone());
         }

@@ -168,6 +168,7 @@ fn measured(subject: &Arc<dyn Subject>) -> Vec<Quality> {
         Arc::new(Case {
             group: "comparison".into(),
             spelling: "comparison".into(),
+            source: None,
             subject: subject.clone(),
             parameters: Default::default(),
             theta_deg: theta,

@@ -58,6 +58,15 @@ impl Named {
         (!words.is_empty()).then(|| Self::Command(words.into_iter().map(OsString::from).collect()))
     }
 
+    /// The files that it is made of, as far as they are named: of a command, its words that
+    /// are files, and the program.
+    pub fn files(&self) -> Vec<PathBuf> {
+        match self {
+            Self::Library(path) | Self::Wasm(path) => vec![path.clone()],
+            Self::Command(words) => words.iter().map(PathBuf::from).filter(|path| path.is_file()).collect(),
+        }
+    }
+
     /// The way there.
     pub fn route(&self, limits: &Limits) -> Result<Route, Fault> {
         Ok(match self {

@@ -1,13 +1,15 @@
 //! Results of a run to a report.
 
 use super::json::{
-    AttemptRow, CheckResult, Diagnosis, Machine, Report, SCHEMA_VERSION, SubjectId, Summary, WoAngles,
+    AttemptRow, CheckResult, Diagnosis, Machine, Report, SCHEMA_VERSION, SubjectEntry, SubjectId, Summary,
+    WaiverRow, WaiverState, WoAngles,
 };
 use crate::checks::Verdict;
 use crate::engine::{CaseResult, Finding, Results};
 use crate::evidence::{Figure, Meter};
-use crate::suite::Plan;
+use crate::suite::{Case, Plan, digests};
 use std::f64::consts::LN_10;
+use std::sync::Arc;
 
 /// Where the parts of a report lie, and how its cases are reproduced.
 pub struct Files<'a> {
@@ -61,6 +63,9 @@ impl Report {
             machine: Machine::this(),
             partial: results.partial.clone(),
             summary: Summary::count(&rows),
+            subjects: subjects(plan, true),
+            waivers: waivers(results),
+            allocation: None,
             results: rows,
             diagnoses: Vec::new(),
         }
@@ -80,6 +85,62 @@ impl Report {
     }
 }
 
+/// What a row is called that is not named as its subject.
+fn label(case: &Case) -> Option<String> {
+    (case.spelling.split(':').next() != Some(&case.group)).then(|| case.group.clone())
+}
+
+/// The subjects of a plan, in its order.
+fn subjects(plan: &Plan, samples: bool) -> Vec<SubjectEntry> {
+    let mut digests = digests(plan, samples);
+    let entry = |case: &Arc<Case>| {
+        let digest = digests.remove(&(case.group.clone(), case.spelling.clone()))?;
+        let (name, source) = (case.spelling.clone(), case.source.clone());
+        Some(SubjectEntry { name, label: label(case), digest, source, carried: false })
+    };
+    plan.cases.iter().filter_map(entry).collect()
+}
+
+/// What became of the waivers of the cases that were run.
+fn waivers(results: &Results) -> Vec<WaiverRow> {
+    let mut rows: Vec<WaiverRow> = Vec::new();
+    for case in &results.cases {
+        for waiver in &case.case.waivers {
+            let subject = waiver.subject.as_ref().unwrap_or(&case.case.group);
+            let until = waiver.until.map(|day| day.to_string());
+            let same = |row: &WaiverRow| {
+                (&row.check, &row.subject, &row.because, &row.until, row.at_most)
+                    == (&waiver.check, subject, &waiver.because, &until, waiver.at_most)
+            };
+            let at = rows.iter().position(same).unwrap_or_else(|| {
+                rows.push(WaiverRow {
+                    check: waiver.check.clone(),
+                    subject: subject.clone(),
+                    because: waiver.because.clone(),
+                    until,
+                    at_most: waiver.at_most,
+                    state: if waiver.expired { WaiverState::Expired } else { WaiverState::Unused },
+                    covered: 0,
+                });
+                rows.len() - 1
+            });
+            let row = &mut rows[at];
+            for finding in &case.findings {
+                if !waiver.is_about(&case.case.spelling, finding.check) {
+                    continue;
+                }
+                row.covered += usize::from(finding.outcome.verdict == Verdict::Waived);
+                row.state = match (row.state, finding.outcome.verdict) {
+                    (WaiverState::Unused, Verdict::Waived) => WaiverState::Used,
+                    (WaiverState::Unused | WaiverState::Used, Verdict::Fail) => WaiverState::Exceeded,
+                    (state, _) => state,
+                };
+            }
+        }
+    }
+    rows
+}
+
 fn row(case: &CaseResult, finding: &Finding, files: &Files) -> CheckResult {
     let outcome = &finding.outcome;
     let figure = |v: f64| Figure(v);
@@ -87,12 +148,10 @@ fn row(case: &CaseResult, finding: &Finding, files: &Files) -> CheckResult {
     // The claims of a case that was not run, or was given up, are in force too.
     let asked = || Meter::describe(&*case.case.subject).ok();
     let kind = description.map(|d| d.kind).or_else(|| Some(asked()?.kind)).unwrap_or_default();
-    let name = case.case.spelling.clone();
-    let own_row = name.split(':').next() != Some(&case.case.group);
     CheckResult {
         subject: SubjectId {
-            label: own_row.then(|| case.case.group.clone()),
-            name,
+            label: label(&case.case),
+            name: case.case.spelling.clone(),
             parameters: case.case.parameters.clone(),
             claims: description.map_or_else(
                 || case.case.claims.over(asked().map(|d| d.claims).unwrap_or_default()),
@@ -103,6 +162,7 @@ fn row(case: &CaseResult, finding: &Finding, files: &Files) -> CheckResult {
         wo: kind
             .has_directions()
             .then_some(WoAngles { theta_deg: case.case.theta_deg, phi_deg: case.case.phi_deg }),
+        transport: case.case.transport,
         verdict: outcome.verdict,
         effect: outcome.effect.clone(),
         p_value: outcome.ln_p.map(|p| figure(p.exp())),

@@ -27,7 +27,7 @@ impl Diagnosis {
     }
 
     fn new(subject: String, verdict: diagnosis::Verdict, cases: &[&CaseResult]) -> Self {
-        let diagnosis::Verdict { ranked, confident, unexplained, another, textbook, profile: _ } = verdict;
+        let diagnosis::Verdict { ranked, confident, unexplained, another, textbook, profile } = verdict;
         let Some((score, first)) = ranked.first() else {
             return Self {
                 subject,
@@ -39,6 +39,7 @@ impl Diagnosis {
                 runner_up: None,
                 evidence: Vec::new(),
                 textbook,
+                profile,
                 plot: None,
                 page: None,
             };
@@ -74,6 +75,7 @@ impl Diagnosis {
             runner_up: second.map(|(behind, claim)| runner_up(behind, claim)),
             evidence,
             textbook,
+            profile,
             plot: None,
             page: Some(page(first.cause)),
         }

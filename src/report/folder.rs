@@ -1,11 +1,9 @@
 //! A report as a folder: report.json, evidence and pictures.
 
-use super::json::{CheckResult, Report};
-use super::plots::{Pictured, Which, draw, file_name};
-use super::ratio_plot;
+use super::json::{CheckResult, Diagnosis, Report};
+use super::plots::{Pictured, Which, draw, file_name, ratio_picture};
 use super::saved::{FileError, evidence_path, read_evidence, write_whole};
 use crate::checks::{Verdict, level_p_values};
-use crate::diagnosis::Diagnosed;
 use crate::engine::Results;
 use crate::evidence::Evidence;
 use std::collections::{BTreeMap, BTreeSet};
@@ -40,16 +38,16 @@ pub fn draw_results(
     draw(folder, &cases, &p_values, which)
 }
 
-/// Draws the pictures of diagnoses; the path of each by its subject.
-pub fn draw_diagnoses(folder: &Path, diagnosed: &[Diagnosed]) -> Result<BTreeMap<String, String>, FileError> {
-    let (mut paths, mut names) = (BTreeMap::new(), BTreeSet::new());
-    for (subject, verdict) in diagnosed {
-        let Some(profile) = &verdict.profile else { continue };
-        let path = format!("plots/diagnosis-{}.svg", file_name(subject, &mut names));
-        write_whole(&folder.join(&path), ratio_plot::ratio(subject, profile).as_bytes())?;
-        paths.insert(subject.clone(), path);
+/// Draws the pictures of diagnoses, and tells each its path.
+pub fn draw_diagnoses(folder: &Path, diagnoses: &mut [Diagnosis]) -> Result<(), FileError> {
+    let mut names = BTreeSet::new();
+    for found in diagnoses {
+        let Some(profile) = &found.profile else { continue };
+        let path = format!("plots/diagnosis-{}.svg", file_name(&found.subject, &mut names));
+        write_whole(&folder.join(&path), ratio_picture(&found.subject, profile).as_bytes())?;
+        found.plot = Some(path);
     }
-    Ok(paths)
+    Ok(())
 }
 
 /// Draws the pictures of a saved report again from its evidence; how many

@@ -1,9 +1,11 @@
 //! report.json: the one source of every other output.
 
-use crate::bsdf::Claims;
+use crate::bsdf::{Claims, Transport};
 use crate::checks::{Effect, Verdict};
+use crate::diagnosis::Profile;
 use crate::evidence::{Evaluations, Figure, Place};
 use crate::registry::Parameters;
+use crate::suite::Source;
 use schemars::JsonSchema;
 use serde::{Deserialize, Serialize};
 
@@ -35,6 +37,15 @@ pub struct Report {
     pub partial: Option<String>,
     /// Counts of verdicts.
     pub summary: Summary,
+    /// What was measured, in the suite's order.
+    #[serde(default, skip_serializing_if = "Vec::is_empty")]
+    pub subjects: Vec<SubjectEntry>,
+    /// Failures that the suite accepts, and what became of them.
+    #[serde(default, skip_serializing_if = "Vec::is_empty")]
+    pub waivers: Vec<WaiverRow>,
+    /// How a budget of time was spent, if the run had one.
+    #[serde(default, skip_serializing_if = "Option::is_none")]
+    pub allocation: Option<Allocation>,
     /// One entry a case and check.
     pub results: Vec<CheckResult>,
     /// What is wrong with failing subjects.
@@ -80,6 +91,9 @@ pub struct CheckResult {
     pub check: String,
     /// The given direction.
     pub wo: Option<WoAngles>,
+    /// The mode of transport; absent where it is radiance.
+    #[serde(default, skip_serializing_if = "is_radiance")]
+    pub transport: Transport,
     /// The verdict.
     pub verdict: Verdict,
     /// How large the error is.
@@ -138,6 +152,74 @@ impl SubjectId {
     }
 }
 
+fn is_radiance(transport: &Transport) -> bool {
+    *transport == Transport::Radiance
+}
+
+/// A subject of the run.
+#[derive(Clone, Debug, PartialEq, Serialize, Deserialize, JsonSchema)]
+pub struct SubjectEntry {
+    /// How it is written.
+    pub name: String,
+    /// What the suite calls its row, if it has a name of its own.
+    #[serde(default, skip_serializing_if = "Option::is_none")]
+    pub label: Option<String>,
+    /// Names everything that its results depend on: what it says of itself, the bytes of
+    /// its program or file (of gonio itself for what is built in), and how it was measured.
+    pub digest: String,
+    /// The line that asks for it.
+    #[serde(default, skip_serializing_if = "Option::is_none")]
+    pub source: Option<Source>,
+    /// Whether its results were taken over from an earlier report, as its digest is the same.
+    #[serde(default, skip_serializing_if = "std::ops::Not::not")]
+    pub carried: bool,
+}
+
+/// What became of a waiver.
+#[derive(Clone, Debug, PartialEq, Serialize, Deserialize, JsonSchema)]
+pub struct WaiverRow {
+    /// Which check.
+    pub check: String,
+    /// The suite's entry that it belongs to, or the one subject of it that it names.
+    pub subject: String,
+    /// Why a failure is meant.
+    pub because: String,
+    /// The last day on which it holds (YYYY-MM-DD).
+    #[serde(default, skip_serializing_if = "Option::is_none")]
+    pub until: Option<String>,
+    /// The largest effect that it covers.
+    #[serde(default, skip_serializing_if = "Option::is_none")]
+    pub at_most: Option<f64>,
+    /// What became of it.
+    pub state: WaiverState,
+    /// Failures that it covers.
+    pub covered: usize,
+}
+
+/// Whether a waiver is still needed.
+#[derive(Clone, Copy, Debug, PartialEq, Eq, Serialize, Deserialize, JsonSchema)]
+#[serde(rename_all = "lowercase")]
+pub enum WaiverState {
+    /// It covers a failure, and none of its check is left uncovered.
+    Used,
+    /// Nothing failed that it could cover: delete it.
+    Unused,
+    /// Its day is over; failures count again.
+    Expired,
+    /// A failure is larger than it covers.
+    Exceeded,
+}
+
+/// How a budget of time was spent. A run with the same samples is the same bit for bit.
+#[derive(Clone, Debug, PartialEq, Serialize, Deserialize, JsonSchema)]
+pub struct Allocation {
+    /// The budget in seconds; absent in a run that followed the allocation of another.
+    #[serde(default, skip_serializing_if = "Option::is_none")]
+    pub time_s: Option<f64>,
+    /// Draws at most of each case, in the plan's order; 0 where it was not begun.
+    pub samples: Vec<u64>,
+}
+
 /// A direction in degrees.
 #[derive(Clone, Copy, Debug, PartialEq, Serialize, Deserialize, JsonSchema)]
 pub struct WoAngles {
@@ -180,6 +262,9 @@ pub struct Diagnosis {
     /// The published model that the subject was recognised as.
     #[serde(default, skip_serializing_if = "Option::is_none")]
     pub textbook: Option<String>,
+    /// The counts over pdf() along the plane of incidence, with what the cause predicts.
+    #[serde(default, skip_serializing_if = "Option::is_none")]
+    pub profile: Option<Profile>,
     /// Its picture, from the report's folder: the counts over pdf().
     #[serde(default, skip_serializing_if = "Option::is_none")]
     pub plot: Option<String>,

@@ -114,12 +114,12 @@ pub fn read_evidence(path: &Path) -> Result<Evidence, FileError> {
 
 #[cfg(test)]
 mod tests {
-    use super::super::synthetic::gallery;
+    use super::super::plots::synthetic::gallery;
     use super::*;
 
     #[test]
     fn evidence_comes_back_and_draws_the_same() {
-        use super::super::disc::{Caption, picture};
+        use super::super::plots::{Caption, disc_picture as picture};
         let folder = tempfile::tempdir().unwrap();
         let (_, evidence) = gallery().remove(0);
         let path = write_evidence(folder.path(), 7, &evidence).unwrap();

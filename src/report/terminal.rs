@@ -144,7 +144,7 @@ fn matrix(text: &mut String, report: &Report, look: Look) {
         let heads: String = band.iter().map(|check| format!("{:>COLUMN$}", short(check))).collect();
         line(text, &format!("{:longest$}{heads}", ""));
         for row in &rows {
-            let mut content = format!("{:longest$}", super::figure::shortened(&name(row), longest));
+            let mut content = format!("{:longest$}", super::plots::shortened(&name(row), longest));
             for check in band {
                 let cell = match worst.get(&(*row, *check)) {
                     Some(verdict) => look.paint(code(*verdict), &symbol(*verdict).to_string()),
@@ -400,6 +400,7 @@ pub(super) mod tests {
             },
             check: check.into(),
             wo: Some(WoAngles { theta_deg, phi_deg: 17.0 }),
+            transport: Default::default(),
             verdict,
             effect: None,
             p_value: None,
@@ -469,7 +470,11 @@ pub(super) mod tests {
                 unsure,
                 result("lambert", "white-furnace", 0.0, Verdict::Skipped),
             ],
+            subjects: Vec::new(),
+            waivers: Vec::new(),
+            allocation: None,
             diagnoses: vec![Diagnosis {
+                profile: None,
                 subject: "ggx:alpha=0.5".into(),
                 cause: Some("half-vector-jacobian".into()),
                 confident: true,

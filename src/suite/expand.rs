@@ -133,6 +133,7 @@ impl<'a> Factors<'a> {
         Case {
             group: entry.label.clone().unwrap_or_else(|| entry.model.get_ref().clone()),
             spelling: combination.spelling.clone(),
+            source: file.source_of(entry),
             subject: combination.subject.clone(),
             parameters: combination.parameters.clone(),
             theta_deg: if back { 180.0 - theta } else { theta },

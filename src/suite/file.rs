@@ -1,7 +1,7 @@
 //! The format of suite files.
 
 use super::mistake::{Mistake, SuiteError};
-use super::plan::{Settings, Waiver};
+use super::plan::{Settings, Source, Waiver};
 use super::promises::{claims, waivers};
 use super::reader::{Node, Reader, azimuth, entries, fraction, polar, positive};
 use crate::bsdf::{ClaimsPatch, Transport};
@@ -229,6 +229,13 @@ impl SuiteFile {
         }
     }
 
+    /// The line of an entry, where the suite is a file.
+    pub(super) fn source_of(&self, entry: &Entry) -> Option<Source> {
+        let file = Path::new(&self.source_name).is_file().then(|| self.source_name.clone())?;
+        let before = self.text.get(..entry.model.span().start)?;
+        Some(Source { file, line: 1 + before.matches('\n').count() })
+    }
+
     /// These mistakes of this suite.
     pub(super) fn error(&self, mistakes: Vec<Mistake>) -> SuiteError {
         SuiteError::new(&self.source_name, &self.text, mistakes)
@@ -312,7 +319,7 @@ impl SuiteFile {
                 }
                 "label" => entry.label = self.read_label(reader, value),
                 "claims" => entry.claims = claims(reader, value),
-                "waive" => entry.waivers = waivers(reader, value),
+                "waive" => entry.waivers = waivers(reader, value, today()),
                 "reference" => {
                     let text = reader.text(key, value);
                     entry.reference = text.map(|t| Spanned::new(t.span(), self.subject_beside(t.get_ref())));
@@ -479,6 +486,11 @@ impl SuiteFile {
         }
         Some(label.into_inner())
     }
+}
+
+/// The day by which waivers expire: that of Greenwich, the same on every machine.
+fn today() -> jiff::civil::Date {
+    jiff::Timestamp::now().to_zoned(jiff::tz::TimeZone::UTC).date()
 }
 
 fn set<T>(place: &mut T, value: Option<T>) {

@@ -1,6 +1,7 @@
 //! Suite files, and the plan of cases that they expand to.
 
 mod combination;
+mod digest;
 mod embedded;
 mod expand;
 mod file;
@@ -15,11 +16,12 @@ mod variants;
 #[cfg(test)]
 pub(crate) mod tests;
 
+pub use digest::digests;
 pub use embedded::{EMBEDDED, Embedded, embedded};
 pub use expand::{Expanded, expand, load};
 pub use file::{Cover, Entry, FALSE_ALARM, Overrides, PHI, SEED, SuiteFile, THETA, mebibytes, time_limit};
 pub use mistake::{Mistake, SuiteError};
-pub use plan::{Case, Plan, Settings, Waiver};
+pub use plan::{Case, Plan, Settings, Source, Waiver};
 pub use promises::set_claim;
 pub use reader::{azimuth, count, fraction, polar, positive};
 pub use reproduce::reproduce;

@@ -4,17 +4,48 @@ use crate::bsdf::{ClaimsPatch, Direction, Subject, Transport};
 use crate::evidence::Company;
 use crate::plugins::Limits;
 use crate::registry::Parameters;
+use schemars::JsonSchema;
 use serde::{Deserialize, Serialize};
 use std::sync::Arc;
 use std::time::Duration;
 
+/// A line that people can go to.
+#[derive(Clone, Debug, PartialEq, Eq, Serialize, Deserialize, JsonSchema)]
+pub struct Source {
+    /// The path of a file, as it was typed.
+    pub file: String,
+    /// From 1.
+    pub line: usize,
+}
+
 /// A check whose failure the suite accepts, with the reason.
-#[derive(Clone, Debug, PartialEq, Eq, Serialize, Deserialize)]
+#[derive(Clone, Debug, Default, PartialEq)]
 pub struct Waiver {
     /// Which check.
     pub check: String,
     /// Why its failure is meant.
     pub because: String,
+    /// Of which subject, as it is written; all of the entry where `None`.
+    pub subject: Option<String>,
+    /// The last day on which it holds.
+    pub until: Option<jiff::civil::Date>,
+    /// The largest effect that it covers.
+    pub at_most: Option<f64>,
+    /// Whether that day was over when the suite was read.
+    pub expired: bool,
+}
+
+impl Waiver {
+    /// Whether it is about a check of the subject that is written so.
+    pub fn is_about(&self, spelling: &str, check: &str) -> bool {
+        self.check == check && self.subject.as_ref().is_none_or(|s| s == spelling)
+    }
+
+    /// Whether it covers a failure of this size, where one is known.
+    pub fn covers(&self, effect: Option<f64>) -> bool {
+        // Not `>`: an effect that is NaN is not within any limit.
+        !self.expired && self.at_most.is_none_or(|most| effect.is_some_and(|e| e.abs() <= most))
+    }
 }
 
 /// What is judged, and how sharply.
@@ -51,6 +82,8 @@ pub struct Case<'a> {
     pub group: String,
     /// How the subject is written; with seed and wo it names the random numbers.
     pub spelling: String,
+    /// The line that asks for it.
+    pub source: Option<Source>,
     /// The subject.
     pub subject: Arc<dyn Subject + 'a>,
     /// Its parameters.

@@ -5,6 +5,7 @@ use super::mistake::Mistake;
 use super::plan::Waiver;
 use super::reader::{Node, Reader, entries, positive};
 use crate::bsdf::ClaimsPatch;
+use jiff::civil::Date;
 use serde::Deserialize;
 use std::ops::Range;
 use toml::Spanned;
@@ -61,22 +62,31 @@ pub fn set_claim(
     Ok(())
 }
 
-/// The waivers of an entry.
-pub(super) fn waivers(reader: &mut Reader, value: &Node) -> Vec<Waiver> {
+/// The waivers of an entry, as of `today`.
+pub(super) fn waivers(reader: &mut Reader, value: &Node, today: Date) -> Vec<Waiver> {
     let mut all: Vec<Waiver> = Vec::new();
     for item in reader.items("waive", value).unwrap_or_default() {
         let DeValue::Table(table) = item.get_ref() else {
             let _: Option<()> = reader.wrong_type("waive", item, "{ check = \"ID\", because = \"REASON\" }");
             continue;
         };
-        let (mut check, mut because) = (None, None);
+        let mut waiver = Waiver::default();
         let mut missing = vec!["check", "because"];
+        let mistakes = reader.mistakes.len();
         for (key, span, value) in entries(table) {
             missing.retain(|m| *m != key);
             match key {
-                "check" => check = check_id(reader, key, value),
-                "because" => because = reader.text(key, value),
-                _ => reader.unknown(span, "key of a waiver", key, &["check", "because"]),
+                "check" => waiver.check = check_id(reader, key, value).unwrap_or_default(),
+                "because" => {
+                    waiver.because = reader.text(key, value).map(Spanned::into_inner).unwrap_or_default();
+                }
+                "subject" => waiver.subject = reader.text(key, value).map(Spanned::into_inner),
+                "until" => {
+                    waiver.until = date(reader, value);
+                    waiver.expired = waiver.until.is_some_and(|day| day < today);
+                }
+                "at_most" => waiver.at_most = reader.number(key, value, positive),
+                _ => reader.unknown(span, "key of a waiver", key, &WAIVER_KEYS),
             }
         }
         if let Some(key) = missing.first() {
@@ -84,9 +94,26 @@ pub(super) fn waivers(reader: &mut Reader, value: &Node) -> Vec<Waiver> {
             let help = "write { check = \"ID\", because = \"why its failure is meant\" }";
             reader.note(Mistake::new(item.span(), message, "incomplete").help(help));
         }
-        if let (Some(check), Some(because)) = (check, because) {
-            all.push(Waiver { check, because: Spanned::into_inner(because) });
+        if reader.mistakes.len() == mistakes {
+            all.push(waiver);
         }
     }
     all
+}
+
+const WAIVER_KEYS: [&str; 5] = ["check", "because", "subject", "until", "at_most"];
+
+/// A day, as a TOML date or as text.
+fn date(reader: &mut Reader, value: &Node) -> Option<Date> {
+    let text = match value.get_ref() {
+        DeValue::Datetime(day) => day.to_string(),
+        DeValue::String(text) => text.to_string(),
+        _ => return reader.wrong_type("until", value, "a day as 2027-01-31"),
+    };
+    let day = text.parse();
+    if day.is_err() {
+        let message = format!("`{text}` is no day");
+        reader.note(Mistake::new(value.span(), message, "not a day").help("write until = 2027-01-31"));
+    }
+    day.ok()
 }

@@ -14,6 +14,7 @@ pub fn case(name: &str, subject: Arc<dyn Subject>, theta: f64, samples: u64) -> 
     Case {
         group: name.into(),
         spelling: name.into(),
+        source: None,
         subject,
         parameters: Default::default(),
         theta_deg: theta,

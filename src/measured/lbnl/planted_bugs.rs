@@ -19,6 +19,7 @@ fn measure(subject: impl Subject + 'static) -> CaseResult<'static> {
     let case = Case {
         group: "table".into(),
         spelling: "table".into(),
+        source: None,
         subject: Arc::new(subject),
         parameters: Default::default(),
         theta_deg: 60.0,

@@ -1,7 +1,7 @@
 //! Which pictures a report has, and where they are.
 
+use super::super::saved::{FileError, write_whole};
 use super::disc::{self, Caption};
-use super::saved::{FileError, write_whole};
 use super::{curves, reciprocity_map};
 use crate::evidence::Evidence;
 use std::collections::{BTreeMap, BTreeSet};
@@ -100,7 +100,7 @@ fn by_subject<'a>(cases: &[Pictured<'a>]) -> BTreeMap<(&'a str, &'a str), Vec<&'
 }
 
 /// A name that any file system takes, and that no other has.
-pub(super) fn file_name(text: &str, taken: &mut BTreeSet<String>) -> String {
+pub fn file_name(text: &str, taken: &mut BTreeSet<String>) -> String {
     let words: Vec<&str> = text.split(|c: char| !c.is_ascii_alphanumeric() && c != '.').collect();
     // A group is often named as its only subject is.
     let mut kept: Vec<&str> = words.into_iter().filter(|w| !w.trim_matches('.').is_empty()).collect();
