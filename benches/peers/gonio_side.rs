@@ -85,6 +85,7 @@ fn answer(registry: &Registry, line: &str) -> Result<Answer, Box<dyn Error>> {
     let Resolved { spelling, parameters, subject } = registry.resolve(&request.subject.parse()?)?;
     let case = Arc::new(Case {
         group: spelling.clone(),
+        source: None,
         spelling,
         subject,
         parameters,
