@@ -89,7 +89,7 @@ mod tests {
             evidence: None,
             seconds: 0.0,
         };
-        Results { cases: vec![case], share: 1e-9, tests: 1, partial: None, seconds: 0.0 }
+        Results { cases: vec![case], share: 1e-9, tests: 1, allocation: None, partial: None, seconds: 0.0 }
     }
 
     #[test]

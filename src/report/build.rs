@@ -66,6 +66,7 @@ impl Report {
             subjects: subjects(plan, true),
             waivers: waivers(results),
             allocation: None,
+            comparison: None,
             results: rows,
             diagnoses: Vec::new(),
         }

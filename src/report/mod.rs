@@ -22,4 +22,4 @@ pub use plots::{
 };
 pub use saved::{FileError, evidence_path, read_evidence, write_evidence, write_whole};
 pub use schema::{schema, schema_text};
-pub use terminal::{Look, diagnoses, summary, symbol};
+pub use terminal::{Look, comparison, diagnoses, summary, symbol};
