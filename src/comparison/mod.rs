@@ -6,3 +6,6 @@ mod pairs;
 
 pub use change::{Change, Comparison, Origin, Place, What};
 pub use compare::compare;
+
+#[cfg(test)]
+mod tests;

@@ -65,7 +65,8 @@ fn timed(case: &Case) -> Option<[f64; 3]> {
     let (mut samples, mut out) = (Default::default(), Vec::new());
     let mut sample = 0.0;
     if has.sample {
-        sample = per_row(|rows| meter.sample(wo, &u[..rows * meter.dimensions()], transport, &mut samples).ok())?;
+        sample =
+            per_row(|rows| meter.sample(wo, &u[..rows * meter.dimensions()], transport, &mut samples).ok())?;
     }
     // Near the lobe where one was drawn, since that is where most evaluations are.
     let wi = if samples.wi.is_empty() { vec![wo; BLOCK as usize] } else { samples.wi.clone() };

@@ -125,8 +125,8 @@ pub fn run(plan: &Plan<'static>, options: &Options, observe: &mut dyn FnMut(&Eve
         _ => "time was up",
     };
     let refused = !matches!(options.draws, Draws::Planned) && unfinished > 0;
-    let partial = (stopped || refused)
-        .then(|| format!("{why}: {unfinished} of {} cases were not begun", chosen.len()));
+    let partial =
+        (stopped || refused).then(|| format!("{why}: {unfinished} of {} cases were not begun", chosen.len()));
     let cases = done.into_iter().flatten().collect();
     let allocation = shared.allotment.dealt();
     Results { cases, share, tests, allocation, partial, seconds: start.elapsed().as_secs_f64() }

@@ -1,16 +1,20 @@
 //! Events and results to terminal, JSON and SVG.
 
 mod build;
+mod carry;
 mod diagnoses;
 mod folder;
 mod json;
 mod plots;
 mod saved;
 mod schema;
+#[cfg(test)]
+pub(crate) mod synthetic;
 mod terminal;
 mod wording;
 
 pub use build::Files;
+pub use carry::Carried;
 pub use folder::{REPORT, draw_diagnoses, draw_results, evidence_of, redraw, write_report};
 pub use json::{
     Allocation, AttemptRow, CheckResult, Diagnosis, Machine, Report, SCHEMA_VERSION, SubjectEntry, SubjectId,

@@ -21,10 +21,8 @@ pub fn compared(text: &mut String, found: &Comparison, look: Look) {
     line(text, "");
     let before = &found.before;
     let heading = format!(
-        "compared with suite {}, seed {}, of {}: {} worse, {} better, {} less sure",
-        before.suite,
-        before.seed,
-        before.started,
+        "compared with the report of {}: {} worse, {} better, {} less sure",
+        before.started.split('.').next().unwrap_or_default(),
         found.worse.len(),
         found.better.len(),
         found.less_sure.len(),
@@ -76,7 +74,12 @@ fn what(what: &What) -> String {
             format!("{} → {}", before.map_or("not there", Verdict::word), after.word())
         }
         What::Efficiency { before, after } => {
-            format!("{} → {} of the draws count ({})", ratio(before.0), ratio(after.0), part(before.0, after.0))
+            format!(
+                "{} → {} of the draws count ({})",
+                ratio(before.0),
+                ratio(after.0),
+                part(before.0, after.0)
+            )
         }
         What::DetectionLimit { before, after } => {
             format!("detection limit {} → {}", ratio(before.0), ratio(after.0))
@@ -90,7 +93,8 @@ fn part(before: f64, after: f64) -> String {
 }
 
 fn places(places: &[Place]) -> String {
-    let first = places.first().and_then(|p| p.wo).map_or(String::new(), |wo| format!(" at {}", direction(wo)));
+    let first =
+        places.first().and_then(|p| p.wo).map_or(String::new(), |wo| format!(" at {}", direction(wo)));
     let mode = match places.first() {
         Some(Place { transport: Transport::Importance, .. }) => " (importance)",
         _ => "",

@@ -3,7 +3,7 @@
 use super::super::json::{CheckResult, Report};
 use super::super::plots::shortened;
 use super::super::wording::direction;
-use super::look::{Look, code, line, symbol};
+use super::look::{Look, code, indented, line, symbol};
 use crate::checks::{self, Verdict};
 use std::collections::{BTreeMap, BTreeSet};
 use std::fmt::Write;
@@ -62,7 +62,7 @@ fn columns(report: &Report) -> Vec<&str> {
 }
 
 pub fn matrix(text: &mut String, report: &Report, look: Look) {
-    let columns = columns(report);
+    let mut columns = columns(report);
     let mut rows: Vec<&str> = Vec::new();
     let mut worst: BTreeMap<(&str, &str), Verdict> = BTreeMap::new();
     let mut cases: BTreeMap<&str, BTreeSet<(String, String, String)>> = BTreeMap::new();
@@ -80,10 +80,14 @@ pub fn matrix(text: &mut String, report: &Report, look: Look) {
     }
     let all = rows.len();
     if look.lines.is_some_and(|lines| all > lines / ROWS) {
-        let finding = |row: &str| columns.iter().any(|c| worst.get(&(row, *c)).is_some_and(|v| is_finding(*v)));
+        let finding =
+            |row: &str| columns.iter().any(|c| worst.get(&(row, *c)).is_some_and(|v| is_finding(*v)));
         rows.retain(|row| finding(row));
     }
     let quiet = all - rows.len();
+    let idle = |check: &&str| worst.iter().all(|((_, c), v)| c != check || *v == Verdict::Skipped);
+    let skipped: Vec<&str> = columns.iter().copied().filter(|c| look.lines.is_some() && idle(c)).collect();
+    columns.retain(|check| !skipped.contains(check));
     let name = |row: &str| format!("{row} ({})", cases[row].len());
     let longest = rows.iter().map(|row| name(row).chars().count()).max().unwrap_or(0).min(30);
     let fitting = ((look.width() - longest) / COLUMN).max(1);
@@ -103,8 +107,15 @@ pub fn matrix(text: &mut String, report: &Report, look: Look) {
             line(text, &content);
         }
         if quiet > 0 {
-            line(text, &format!("{quiet} {}rows without a finding", if rows.is_empty() { "" } else { "more " }));
+            line(
+                text,
+                &format!("{quiet} {}rows without a finding", if rows.is_empty() { "" } else { "more " }),
+            );
         }
+        line(text, "");
+    }
+    if !skipped.is_empty() {
+        indented(text, &format!("skipped everywhere: {}", skipped.join(", ")), 0, look);
         line(text, "");
     }
     let names: Vec<String> = columns.iter().map(|c| format!("{}\u{a0}{c}", short(c))).collect();

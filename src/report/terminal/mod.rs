@@ -6,7 +6,7 @@ mod look;
 mod matrix;
 mod summary;
 #[cfg(test)]
-pub(super) mod tests;
+mod tests;
 
 pub use blocks::diagnoses;
 pub use comparison::comparison;
