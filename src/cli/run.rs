@@ -3,6 +3,7 @@
 use super::args::{Format, Measuring, Plots, Voice};
 use super::error::CliError;
 use super::exit::Exit;
+use super::formats::{Destination, Outputs};
 use super::interrupt::stop_on_interrupt;
 use super::output::{emit, prove_writable, tell};
 use super::progress::Progress;
@@ -47,6 +48,8 @@ pub struct Request {
     pub plots: Plots,
     /// Whether unclear results fail.
     pub strict: bool,
+    /// What else is written into the folder.
+    pub outputs: Outputs,
     /// Combinations of parameters that were left out since their model refuses them.
     pub refused: usize,
     /// Explanations of failures besides those that come with gonio.
@@ -64,6 +67,7 @@ impl Request {
             format: measuring.format,
             plots: measuring.plots,
             strict: measuring.strict,
+            outputs: measuring.outputs.clone(),
             refused: 0,
             explanations: Arc::new(registry.explanations()),
         }
@@ -229,6 +233,11 @@ fn run(
         return Err(error.into());
     }
     written?;
+    if let Some(folder) = &folder {
+        let stdout_is_taken = request.format == Format::Json;
+        let to = Destination { report: folder, out: folder, stdout_is_taken, quiet: voice.quiet };
+        request.outputs.write(&report, to)?;
+    }
     if stop.load(Ordering::Relaxed) { Ok(Exit::Interrupted) } else { Ok(Exit::of(&results, request.strict)) }
 }
 

@@ -1,8 +1,9 @@
-//! Events and results to terminal, JSON and SVG.
+//! Events and results to terminal, JSON, SVG and the formats of CI servers.
 
 mod build;
 mod diagnoses;
 mod folder;
+mod formats;
 mod json;
 mod plots;
 mod saved;
@@ -12,6 +13,7 @@ mod wording;
 
 pub use build::Files;
 pub use folder::{REPORT, draw_diagnoses, draw_results, evidence_of, redraw, write_report};
+pub use formats::{Format, SUMMARY_BYTES, Site, annotations, summary_within, write_formats};
 pub use json::{
     Allocation, AttemptRow, CheckResult, Diagnosis, Machine, Report, SCHEMA_VERSION, SubjectEntry, SubjectId,
     Summary, WaiverRow, WaiverState, WoAngles,

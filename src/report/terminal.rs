@@ -1,7 +1,7 @@
 //! The summary of a report that a person wants to read first.
 
 use super::json::{CheckResult, Diagnosis, Report};
-use super::wording::{certainty, direction, effect, probability, range, worst, wrapped};
+use super::wording::{direction, facts, probability, range, wrapped};
 use crate::checks::{self, Verdict};
 use std::collections::{BTreeMap, BTreeSet};
 use std::fmt::Write;
@@ -59,7 +59,7 @@ fn code(verdict: Verdict) -> &'static str {
 }
 
 /// Three letters for a check's column.
-fn short(check: &str) -> String {
+pub(super) fn short(check: &str) -> String {
     let known = match check {
         "sanity" => "san",
         "determinism" => "det",
@@ -113,7 +113,7 @@ fn indented(text: &mut String, content: &str, indent: usize, look: Look) {
 }
 
 /// Checks in the order of reports, unknown ones last.
-fn columns(report: &Report) -> Vec<&str> {
+pub(super) fn columns(report: &Report) -> Vec<&str> {
     let met: BTreeSet<&str> = report.results.iter().map(|r| r.check.as_str()).collect();
     let known = checks::all().iter().map(|c| c.id()).filter(|id| met.contains(id));
     let unknown = met.iter().copied().filter(|id| checks::find(id).is_none());
@@ -315,19 +315,8 @@ fn block(text: &mut String, kind: &[&CheckResult], found: Option<&Diagnosis>, lo
         n => format!("  (and {} more directions)", n - 1),
     };
     line(text, &format!("{verdict}  {}  {}{wo}{more}", result.subject.name, look.paint("1", &result.check)));
-    if let Some(found) = &result.effect {
-        let channel = result.channel.as_ref().map_or(String::new(), |c| format!(" (channel {c})"));
-        indented(text, &(effect(found) + &channel), 4, look);
-    }
-    if let Some(certain) = certainty(result) {
-        indented(text, &certain, 4, look);
-    }
-    if let Some(place) = &result.worst {
-        indented(text, &worst(place), 4, look);
-    }
-    indented(text, &result.message, 4, look);
-    if let Some(reason) = result.reason.as_ref().filter(|r| **r != result.message) {
-        indented(text, reason, 4, look);
+    for fact in facts(result) {
+        indented(text, &fact, 4, look);
     }
     if let Some(found) = found {
         diagnosis(text, found, Some(result), look);

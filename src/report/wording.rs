@@ -64,7 +64,7 @@ pub fn probability(log10: f64) -> String {
 }
 
 /// How certain a result is: p, the threshold, and the second run.
-pub fn certainty(result: &CheckResult) -> Option<String> {
+fn certainty(result: &CheckResult) -> Option<String> {
     let first = result.attempts.first().map(|a| a.log10_p).or(result.log10_p)?;
     let mut text = format!("p = {}", probability(first.0));
     if let Some(threshold) = result.threshold {
@@ -80,6 +80,20 @@ pub fn certainty(result: &CheckResult) -> Option<String> {
     Some(text)
 }
 
+/// What a result says: its effect, how certain that is, where it is worst, and why.
+pub fn facts(result: &CheckResult) -> Vec<String> {
+    let mut facts = Vec::new();
+    if let Some(found) = &result.effect {
+        let channel = result.channel.as_ref().map_or(String::new(), |c| format!(" (channel {c})"));
+        facts.push(effect(found) + &channel);
+    }
+    facts.extend(certainty(result));
+    facts.extend(result.worst.as_ref().map(worst));
+    facts.push(result.message.clone());
+    facts.extend(result.reason.clone().filter(|reason| *reason != result.message));
+    facts
+}
+
 /// A given direction.
 pub fn direction(wo: WoAngles) -> String {
     format!("θo {}° φo {}°", tidy(wo.theta_deg), tidy(wo.phi_deg))
@@ -92,7 +106,7 @@ fn tidy(value: f64) -> String {
 }
 
 /// Where it is worst, and what was found there.
-pub fn worst(place: &Place) -> String {
+fn worst(place: &Place) -> String {
     let mut text = "worst".to_string();
     if let Some(wi) = place.wi {
         let phi = wi.phi().to_degrees().rem_euclid(360.0);
