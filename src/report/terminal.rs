@@ -1,7 +1,7 @@
 //! The summary of a report that a person wants to read first.
 
 use super::json::{CheckResult, Diagnosis, Report};
-use super::wording::{direction, facts, probability, range, wrapped};
+use super::wording::{certainty, direction, effect, probability, range, worst, wrapped};
 use crate::checks::{self, Verdict};
 use std::collections::{BTreeMap, BTreeSet};
 use std::fmt::Write;
@@ -315,8 +315,19 @@ fn block(text: &mut String, kind: &[&CheckResult], found: Option<&Diagnosis>, lo
         n => format!("  (and {} more directions)", n - 1),
     };
     line(text, &format!("{verdict}  {}  {}{wo}{more}", result.subject.name, look.paint("1", &result.check)));
-    for fact in facts(result) {
-        indented(text, &fact, 4, look);
+    if let Some(found) = &result.effect {
+        let channel = result.channel.as_ref().map_or(String::new(), |c| format!(" (channel {c})"));
+        indented(text, &(effect(found) + &channel), 4, look);
+    }
+    if let Some(certain) = certainty(result) {
+        indented(text, &certain, 4, look);
+    }
+    if let Some(place) = &result.worst {
+        indented(text, &worst(place), 4, look);
+    }
+    indented(text, &result.message, 4, look);
+    if let Some(reason) = result.reason.as_ref().filter(|r| **r != result.message) {
+        indented(text, reason, 4, look);
     }
     if let Some(found) = found {
         diagnosis(text, found, Some(result), look);

@@ -64,7 +64,7 @@ pub fn probability(log10: f64) -> String {
 }
 
 /// How certain a result is: p, the threshold, and the second run.
-fn certainty(result: &CheckResult) -> Option<String> {
+pub fn certainty(result: &CheckResult) -> Option<String> {
     let first = result.attempts.first().map(|a| a.log10_p).or(result.log10_p)?;
     let mut text = format!("p = {}", probability(first.0));
     if let Some(threshold) = result.threshold {
@@ -106,7 +106,7 @@ fn tidy(value: f64) -> String {
 }
 
 /// Where it is worst, and what was found there.
-fn worst(place: &Place) -> String {
+pub fn worst(place: &Place) -> String {
     let mut text = "worst".to_string();
     if let Some(wi) = place.wi {
         let phi = wi.phi().to_degrees().rem_euclid(360.0);

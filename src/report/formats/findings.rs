@@ -1,7 +1,7 @@
 //! What is worth an alert.
 
 use super::site::{Site, Spot};
-use super::visible::one_line;
+use super::visible::{one_line, visible};
 use crate::bsdf::Transport;
 use crate::checks::Verdict;
 use crate::report::json::{CheckResult, Diagnosis, Report, SubjectId};
@@ -45,6 +45,8 @@ pub struct Finding<'a> {
     pub diagnosis: Option<&'a Diagnosis>,
     /// Where to go.
     pub spot: Spot,
+    /// The subject as people know it.
+    pub name: String,
 }
 
 /// How many times what is tolerated.
@@ -74,8 +76,8 @@ pub fn findings<'a>(report: &'a Report, site: &Site) -> Vec<Finding<'a>> {
                 None => Rule::Check(&result.check),
             };
             let at = *places.entry((verdict, rule, &subject.name, &subject.label)).or_insert_with(|| {
-                let spot = site.spot(report, subject);
-                found.push(Finding { subject, rule, verdict, results: Vec::new(), diagnosis, spot });
+                let (spot, name) = (site.spot(report, subject), name(subject, site));
+                found.push(Finding { subject, rule, verdict, results: Vec::new(), diagnosis, spot, name });
                 found.len() - 1
             });
             found[at].results.push(result);
@@ -106,11 +108,6 @@ impl<'a> Finding<'a> {
         checks
     }
 
-    /// The subject as people know it.
-    pub fn name(&self) -> String {
-        name(self.subject)
-    }
-
     /// Why the suite accepts it.
     pub fn because(&self) -> Option<String> {
         let reasons: BTreeSet<String> =
@@ -122,7 +119,7 @@ impl<'a> Finding<'a> {
     pub fn headline(&self) -> String {
         let lead = self.lead();
         let (check, said) = (one_line(&lead.check), one_line(&lead.message));
-        let reason = || lead.reason.as_ref().map_or_else(|| said.clone(), |reason| one_line(reason));
+        let reason = || in_short(lead.reason.as_ref().unwrap_or(&lead.message));
         match (self.verdict, self.diagnosis) {
             (_, Some(found)) if found.cause.is_some() => one_line(&found.statement),
             (Verdict::Error, _) => format!("could not be measured: {}", reason()),
@@ -139,18 +136,23 @@ impl<'a> Finding<'a> {
     /// What speaks for the headline: repair, checks with their largest effects, and the
     /// command that reproduces the first, each on its line.
     pub fn details(&self) -> Vec<String> {
-        let mut lines = Vec::new();
+        let (lead, mut lines) = (self.lead(), Vec::new());
         if let Some(found) = self.diagnosis {
             match &found.cause {
                 Some(_) => lines.extend(found.repair.iter().map(|r| format!("repair: {}", one_line(r)))),
                 None => lines.push(one_line(&found.statement)),
             }
         }
-        for check in self.checks() {
+        if self.verdict == Verdict::Error {
+            let why = lead.reason.as_ref().unwrap_or(&lead.message);
+            lines.extend(visible(why).lines().map(str::to_string));
+            lines.push(format!("{} checks have no result", self.results.len()));
+        }
+        for check in self.checks().into_iter().filter(|_| self.verdict != Verdict::Error) {
             let of: Vec<_> = self.results.iter().filter(|r| r.check == check).collect();
             lines.push(format!("{}: {}", one_line(check), told(of[0], of.len())));
         }
-        lines.push(format!("reproduce: {}", one_line(&self.lead().command)));
+        lines.push(format!("reproduce: {}", one_line(&lead.command)));
         lines
     }
 
@@ -158,8 +160,7 @@ impl<'a> Finding<'a> {
     /// more samples change.
     pub fn fingerprint(&self) -> String {
         let mut hasher = blake3::Hasher::new();
-        let label = self.subject.label.as_deref().unwrap_or_default();
-        for part in [&self.subject.name, label, &self.rule.id(), self.verdict.word()] {
+        for part in [&self.name, &self.rule.id(), self.verdict.word()] {
             hasher.update(&(part.len() as u64).to_le_bytes());
             hasher.update(part.as_bytes());
         }
@@ -167,10 +168,14 @@ impl<'a> Finding<'a> {
     }
 }
 
-/// A subject as people know it: by its label where it has one.
-pub fn name(subject: &SubjectId) -> String {
-    let spelled = one_line(&subject.name);
-    subject.label.as_ref().map_or(spelled.clone(), |label| format!("{}: {spelled}", one_line(label)))
+/// A subject as people know it, the same on every machine: after its label where that is
+/// another.
+pub fn name(subject: &SubjectId, site: &Site) -> String {
+    let spelled = one_line(&site.portable(&subject.name));
+    match &subject.label {
+        Some(label) if *label != subject.name => format!("{}: {spelled}", one_line(label)),
+        _ => spelled,
+    }
 }
 
 /// Where a case is: the direction, and the mode of transport where it is not radiance.
@@ -178,6 +183,16 @@ pub fn place(result: &CheckResult) -> String {
     let mode = (result.transport != Transport::Radiance).then(|| result.transport.to_string());
     let parts: Vec<String> = result.wo.map(direction).into_iter().chain(mode).collect();
     parts.join(" ")
+}
+
+/// Of what a program said at length, the first line and the last: a traceback ends with
+/// what went wrong.
+pub fn in_short(said: &str) -> String {
+    let lines: Vec<&str> = said.trim().lines().collect();
+    match lines[..] {
+        [first, .., last] => one_line(&format!("{first} … {last}")),
+        _ => one_line(said),
+    }
 }
 
 fn told(clearest: &CheckResult, directions: usize) -> String {
@@ -193,13 +208,8 @@ fn told(clearest: &CheckResult, directions: usize) -> String {
 
 #[cfg(test)]
 mod tests {
+    use super::super::examples::{report, site};
     use super::*;
-    use crate::report::terminal::tests::report;
-    use std::path::Path;
-
-    fn site() -> Site {
-        Site::new(Path::new("/r"), Path::new("/r"), Path::new("out"))
-    }
 
     #[test]
     fn a_cause_stands_for_all_failures_of_its_subject() {
@@ -240,13 +250,14 @@ mod tests {
         let mut report = report();
         for result in &mut report.results[..2] {
             result.verdict = Verdict::Error;
-            result.reason = Some("the program\nended".into());
+            result.reason = Some("the program\nit\nended".into());
         }
         report.results[3].verdict = Verdict::Waived;
         report.results[3].waived_because = Some("coat".into());
         let found = findings(&report, &site());
         assert_eq!((found[0].rule, found[0].results.len()), (Rule::Unmeasured, 2));
-        assert_eq!(found[0].headline(), "could not be measured: the program ended");
+        assert_eq!(found[0].headline(), "could not be measured: the program … ended");
+        assert_eq!(found[0].details()[..3], ["the program", "it", "ended"]);
         let waived = found.last().unwrap();
         assert_eq!(waived.headline(), "goodness-of-fit fails, which is accepted: coat");
         assert_eq!(waived.rule, Rule::Check("goodness-of-fit"), "a cause is told of failures alone");

@@ -45,7 +45,7 @@ impl Format {
         match self {
             // index.html draws on evidence too, and is made elsewhere.
             Self::Html => Vec::new(),
-            Self::Junit => vec![("junit.xml", junit::junit(report))],
+            Self::Junit => vec![("junit.xml", junit::junit(report, site))],
             Self::Sarif => vec![("gonio.sarif", sarif::sarif(report, site))],
             Self::Github => vec![
                 ("github-annotations.txt", github::annotations(report, site)),

@@ -41,7 +41,7 @@ fn line(kind: &str, spot: Option<&Spot>, title: &str, message: &str) -> String {
 }
 
 fn annotation(kind: &str, finding: &Finding) -> String {
-    let mut message = vec![format!("{}: {}", finding.name(), finding.headline())];
+    let mut message = vec![format!("{}: {}", finding.name, finding.headline())];
     message.extend(finding.details());
     line(kind, Some(&finding.spot), &format!("gonio {}", finding.rule.id()), &visible(&message.join("\n")))
 }
@@ -91,14 +91,8 @@ pub fn summary_within(report: &Report, site: &Site, bytes: usize) -> String {
 
 #[cfg(test)]
 mod tests {
-    use super::super::hostile::hostile;
+    use super::super::examples::{hostile, report, site};
     use super::*;
-    use crate::report::terminal::tests::report;
-    use std::path::Path;
-
-    fn site() -> Site {
-        Site::new(Path::new("/r"), Path::new("/r"), Path::new("out"))
-    }
 
     #[test]
     fn what_ends_a_message_or_a_property_is_escaped() {

@@ -48,7 +48,7 @@ fn severity(verdict: Verdict) -> Option<&'static str> {
 
 fn issue(finding: Finding) -> Option<Issue> {
     let severity = severity(finding.verdict)?;
-    let description = format!("{}: {}", finding.name(), finding.headline());
+    let description = format!("{}: {}", finding.name, finding.headline());
     let (check_name, fingerprint) = (finding.rule.id(), finding.fingerprint());
     Some(Issue { description, check_name, fingerprint, severity, location: finding.spot.into() })
 }
@@ -77,16 +77,13 @@ pub fn gitlab(report: &Report, site: &Site) -> String {
 
 #[cfg(test)]
 mod tests {
-    use super::super::hostile::hostile;
+    use super::super::examples::{hostile, report, site};
     use super::*;
-    use crate::report::terminal::tests::report;
     use serde_json::Value;
     use std::collections::BTreeSet;
-    use std::path::Path;
 
     fn issues(report: &Report) -> Vec<Value> {
-        let site = Site::new(Path::new("/r"), Path::new("/r"), Path::new("out"));
-        serde_json::from_str(&gitlab(report, &site)).unwrap()
+        serde_json::from_str(&gitlab(report, &site())).unwrap()
     }
 
     #[test]

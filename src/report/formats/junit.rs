@@ -1,6 +1,7 @@
 //! JUnit XML, as GitLab, Jenkins and the readers for GitHub take it.
 
-use super::findings::{name, place};
+use super::findings::{in_short, name, place};
+use super::site::Site;
 use super::visible::{one_line, visible};
 use crate::checks::Verdict;
 use crate::report::json::{CheckResult, Report, SubjectId};
@@ -10,14 +11,14 @@ use std::collections::{BTreeMap, BTreeSet};
 use std::time::Duration;
 
 /// The whole file: one test suite a subject, one test case a result.
-pub fn junit(report: &Report) -> String {
+pub fn junit(report: &Report, site: &Site) -> String {
     let mut whole = quick_junit::Report::new(format!("gonio {}", one_line(&report.suite)));
     if let Ok(time) = Duration::try_from_secs_f64(report.duration_s) {
         whole.set_time(time);
     }
     let mut taken = BTreeSet::new();
     for (subject, results) in by_subject(report) {
-        let mut suite = TestSuite::new(name(subject));
+        let mut suite = TestSuite::new(name(subject, site));
         suite.add_property(Property::new("gonio.version", one_line(&report.gonio)));
         suite.add_property(Property::new("gonio.seed", report.seed.to_string()));
         suite.add_property(Property::new("gonio.subject", one_line(&subject.name)));
@@ -28,7 +29,7 @@ pub fn junit(report: &Report) -> String {
             // ISO 8601 in UTC, to the second: what every reader takes.
             suite.extra.insert("timestamp".into(), one_line(seconds).into());
         }
-        let class = class(report, subject);
+        let class = class(report, subject, site);
         for result in results {
             suite.add_test_case(test_case(report, result, &class, &mut taken));
         }
@@ -55,9 +56,9 @@ fn by_subject(report: &Report) -> Vec<(&SubjectId, Vec<&CheckResult>)> {
 
 /// `gonio.SUITE.SUBJECT`. Readers take what follows the last dot for the class and the
 /// rest for its package, so that a subject has no dots here: α = 0.5 would be torn apart.
-fn class(report: &Report, subject: &SubjectId) -> String {
+fn class(report: &Report, subject: &SubjectId, site: &Site) -> String {
     let part = |text: &str| text.replace('.', "_");
-    format!("gonio.{}.{}", part(&one_line(&report.suite)), part(&name(subject)))
+    format!("gonio.{}.{}", part(&one_line(&report.suite)), part(&name(subject, site)))
 }
 
 fn test_case(
@@ -83,7 +84,7 @@ fn test_case(
 
 fn status(report: &Report, result: &CheckResult) -> TestCaseStatus {
     let message = one_line(&result.message);
-    let reason = result.reason.as_ref().map_or_else(|| message.clone(), |reason| one_line(reason));
+    let reason = in_short(result.reason.as_ref().unwrap_or(&result.message));
     let (mut status, told) = match result.verdict {
         Verdict::Pass => return TestCaseStatus::success(),
         Verdict::Fail => (TestCaseStatus::non_success(NonSuccessKind::Failure), message),
@@ -105,7 +106,7 @@ fn status(report: &Report, result: &CheckResult) -> TestCaseStatus {
 
 /// Everything that is known of a result, for people.
 fn description(report: &Report, result: &CheckResult) -> String {
-    let mut lines: Vec<String> = vec![visible(&format!("{}  {}", name(&result.subject), place(result)))];
+    let mut lines: Vec<String> = vec![format!("{}  {}", one_line(&result.subject.name), place(result))];
     lines.extend(facts(result).iter().map(|fact| visible(fact)));
     if result.verdict == Verdict::Fail {
         let of = report.diagnoses.iter().find(|d| d.subject == result.subject.name);
@@ -117,10 +118,9 @@ fn description(report: &Report, result: &CheckResult) -> String {
 
 #[cfg(test)]
 mod tests {
-    use super::super::hostile::{TEXT, hostile};
+    use super::super::examples::{TEXT, hostile, report, site};
     use super::*;
     use crate::bsdf::Transport;
-    use crate::report::terminal::tests::report;
 
     /// Its elements of this name.
     fn all<'a>(xml: &'a roxmltree::Document, tag: &'a str) -> Vec<roxmltree::Node<'a, 'a>> {
@@ -135,7 +135,7 @@ mod tests {
         report.results[1].verdict = Verdict::Error;
         report.results[1].reason = Some("the program ended".into());
         report.results[5].reason = Some("not claimed lossless".into());
-        let text = junit(&report);
+        let text = junit(&report, &site());
         let xml = roxmltree::Document::parse(&text).unwrap();
         let suites: Vec<_> = all(&xml, "testsuite").iter().map(|s| s.attribute("name").unwrap()).collect();
         assert_eq!(suites, ["lambert", "ggx:alpha=0.5", "ggx:alpha=0.01"]);
@@ -167,7 +167,7 @@ mod tests {
             r
         }));
         report.results.push(report.results[0].clone());
-        let text = junit(&report);
+        let text = junit(&report, &site());
         let xml = roxmltree::Document::parse(&text).unwrap();
         let cases: Vec<_> = all(&xml, "testcase")
             .iter()
@@ -181,7 +181,7 @@ mod tests {
 
     #[test]
     fn hostile_text_is_read_again_as_it_can_be_seen() {
-        let text = junit(&hostile());
+        let text = junit(&hostile(), &site());
         let xml = roxmltree::Document::parse(&text).unwrap();
         let suite = all(&xml, "testsuite")[0].attribute("name").unwrap().to_string();
         assert!(suite.contains(&one_line(TEXT)), "{suite}");

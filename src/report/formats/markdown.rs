@@ -154,7 +154,7 @@ fn table(report: &Report) -> Option<String> {
 /// Everything about a subject that fails, or that could not be measured.
 fn section(finding: &Finding, pictures: bool) -> String {
     let lead = finding.lead();
-    let mut parts = vec![format!("## {} {}", symbol(finding.verdict), code(&finding.name()))];
+    let mut parts = vec![format!("## {} {}", symbol(finding.verdict), code(&finding.name))];
     if finding.verdict == Verdict::Error {
         let why = lead.reason.as_ref().unwrap_or(&lead.message);
         // What a program said last keeps its lines.
@@ -221,7 +221,7 @@ fn evidence(results: &[&CheckResult]) -> String {
 fn item(finding: &Finding) -> String {
     let n = finding.results.len();
     let cases = if n > 1 { format!(" ({n} cases)") } else { String::new() };
-    format!("- {} {}: {}{cases}", symbol(finding.verdict), code(&finding.name()), text(&finding.headline()),)
+    format!("- {} {}: {}{cases}", symbol(finding.verdict), code(&finding.name), text(&finding.headline()),)
 }
 
 /// A line about a waiver that does not do what it was written for.
@@ -239,13 +239,11 @@ fn waiver(row: &WaiverRow) -> Option<String> {
 
 #[cfg(test)]
 mod tests {
-    use super::super::hostile::hostile;
+    use super::super::examples::{hostile, report, site};
     use super::*;
-    use crate::report::terminal::tests::report;
-    use std::path::Path;
 
     fn whole(report: &Report) -> String {
-        markdown(report, &Site::new(Path::new("/r"), Path::new("/r"), Path::new("out")))
+        markdown(report, &site())
     }
 
     #[test]
@@ -334,9 +332,8 @@ mod tests {
     fn pictures_are_shown_in_the_file_and_only_from_below() {
         let mut report = report();
         report.results[3].plot = Some("plots/a.svg".into());
-        let site = Site::new(Path::new("/r"), Path::new("/r"), Path::new("out"));
         assert!(whole(&report).contains("(plots/a.svg)"));
-        assert!(!joined(&blocks(&report, &site)).contains("plots/a.svg"));
+        assert!(!joined(&blocks(&report, &site())).contains("plots/a.svg"));
         for path in ["../x.svg", "/x.svg", "a) <b>", "https://x"] {
             report.results[3].plot = Some(path.into());
             assert!(!whole(&report).contains("!["), "{path}");

@@ -35,7 +35,7 @@ mod site;
 mod visible;
 
 #[cfg(test)]
-mod hostile;
+mod examples;
 
 pub use format::{Format, write_formats};
 pub use github::{SUMMARY_BYTES, annotations, summary_within};

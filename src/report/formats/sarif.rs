@@ -199,9 +199,9 @@ fn uri(path: &str) -> String {
     text
 }
 
-fn result(finding: &Finding, index: &BTreeMap<String, usize>) -> Entry {
+fn result(finding: &Finding, index: &BTreeMap<String, usize>, site: &Site) -> Entry {
     let rule_id = finding.rule.id();
-    let name = finding.name();
+    let name = finding.name.clone();
     let details = finding.details().join("\n");
     let waived = finding.verdict == Verdict::Waived;
     let justification = || finding.because().unwrap_or_else(|| "the suite waives it".into());
@@ -217,7 +217,7 @@ fn result(finding: &Finding, index: &BTreeMap<String, usize>) -> Entry {
                 region: Region { start_line: finding.spot.line },
             },
             logical_locations: [LogicalLocation {
-                fully_qualified_name: one_line(&finding.subject.name),
+                fully_qualified_name: one_line(&site.portable(&finding.subject.name)),
                 name,
                 kind: "object",
             }],
@@ -231,7 +231,7 @@ fn result(finding: &Finding, index: &BTreeMap<String, usize>) -> Entry {
             .into_iter()
             .collect(),
         properties: Properties {
-            subject: visible(&finding.subject.name),
+            subject: one_line(&site.portable(&finding.subject.name)),
             verdict: finding.verdict.word(),
             checks: finding.checks().into_iter().map(one_line).collect(),
             command: visible(&finding.lead().command),
@@ -272,7 +272,7 @@ pub fn sarif(report: &Report, site: &Site) -> String {
             invocations: [invocation(report)],
             original_uri_base_ids: BTreeMap::from([(BASE, root)]),
             column_kind: "unicodeCodePoints",
-            results: found.iter().map(|finding| result(finding, &index)).collect(),
+            results: found.iter().map(|finding| result(finding, &index, site)).collect(),
         }],
     };
     let mut text = serde_json::to_string_pretty(&log).unwrap_or_default();
@@ -282,17 +282,14 @@ pub fn sarif(report: &Report, site: &Site) -> String {
 
 #[cfg(test)]
 mod tests {
-    use super::super::hostile::hostile;
+    use super::super::examples::{hostile, report, site};
     use super::*;
     use crate::report::json::SubjectEntry;
-    use crate::report::terminal::tests::report;
     use crate::suite::Source;
     use serde_json::Value;
-    use std::path::Path;
 
     fn run(report: &Report) -> Value {
-        let site = Site::new(Path::new("/r"), Path::new("/r"), Path::new("out"));
-        let log: Value = serde_json::from_str(&sarif(report, &site)).unwrap();
+        let log: Value = serde_json::from_str(&sarif(report, &site())).unwrap();
         log["runs"][0].clone()
     }
 

@@ -54,6 +54,23 @@ impl Site {
         parts.filter(|p| !p.is_empty()).map(|p| p.join("/"))
     }
 
+    /// A subject's name without the folders of this machine: paths from the repository's
+    /// root, and of a program elsewhere only its name.
+    pub fn portable(&self, name: &str) -> String {
+        let mut text = name.to_string();
+        for folder in [&self.current, &self.root].into_iter().filter_map(|f| f.to_str()) {
+            // A root that is the whole disk would leave relative paths that are none.
+            if folder.len() > 1 {
+                text = text.replace(&format!("{folder}/"), "");
+            }
+        }
+        let end = text.find([' ', ':', '#']).unwrap_or(text.len());
+        match text[..end].rfind('/') {
+            Some(slash) if text.starts_with('/') => text.split_off(slash + 1),
+            _ => text,
+        }
+    }
+
     /// The line to go to for a subject: the one that asks for it in its suite; else the
     /// file that its name tells; else the report.
     pub fn spot(&self, report: &Report, subject: &SubjectId) -> Spot {
@@ -116,9 +133,9 @@ fn looks_like_a_file(word: &str) -> bool {
 
 #[cfg(test)]
 mod tests {
+    use super::super::examples::report;
     use super::*;
     use crate::report::json::SubjectEntry;
-    use crate::report::terminal::tests::report;
     use crate::suite::Source;
 
     fn site() -> Site {
@@ -136,6 +153,21 @@ mod tests {
         assert_eq!(relative("/repo/x/b.toml").as_deref(), Some("x/b.toml"));
         for outside in ["../../b.toml", "/etc/passwd", "../../../../../x", "/repo", "/repository/x"] {
             assert_eq!(relative(outside), None, "{outside}");
+        }
+    }
+
+    #[test]
+    fn names_are_the_same_on_every_machine() {
+        for (name, told) in [
+            ("lambert:reflectance=0.5", "lambert:reflectance=0.5"),
+            ("./brdf.so:alpha=0.1", "./brdf.so:alpha=0.1"),
+            ("/usr/bin/python3 brdf.py fast", "python3 brdf.py fast"),
+            ("/usr/bin/python3 /repo/src/brdf.py", "python3 src/brdf.py"),
+            ("/repo/materials/brdf.so#one:file=/repo/a.binary", "brdf.so#one:file=a.binary"),
+            ("/opt/a/brdf.so:file=x/y", "brdf.so:file=x/y"),
+            ("node /x/y.js", "node /x/y.js"),
+        ] {
+            assert_eq!(site().portable(name), told);
         }
     }
 

@@ -1,12 +1,20 @@
-//! A report whose every text tries to break out of its output.
+//! Reports for tests: a usual one, and one whose every text tries to break out of its output.
 
+use super::site::Site;
 use crate::checks::Verdict;
 use crate::report::json::Report;
-use crate::report::terminal::tests::report;
+use std::path::Path;
+
+pub use crate::report::terminal::tests::report;
 
 /// What formats give a meaning to.
 pub const TEXT: &str = "</failure><injected a='1'>\"&amp;]]>\u{1b}[31m\u{1b}]0;\0\u{ffff}|`x```%0A%,::error::\n\
     ::set-output name=a::b\r\n# h <script>alert(1)</script> [a](https://evil.example) {0} \\ @a #1 *b* _c_ $x$ ~~d~~ \u{202e}";
+
+/// Where they lie.
+pub fn site() -> Site {
+    Site::new(Path::new("/r"), Path::new("/r"), Path::new("out"))
+}
 
 /// All fields of text are that.
 pub fn hostile() -> Report {
