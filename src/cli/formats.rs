@@ -55,9 +55,9 @@ impl Outputs {
             return Ok(());
         }
         let site = site(destination.report);
-        for path in write_formats(report, &formats, &site, destination.out)? {
+        for name in write_formats(report, &formats, &site, &real(destination.out))? {
             if !destination.quiet {
-                tell(&format!("written: {}", path.display()));
+                tell(&format!("written: {}", destination.out.join(name).display()));
             }
         }
         let on_github = std::env::var("GITHUB_ACTIONS").is_ok_and(|value| value == "true");
@@ -87,9 +87,12 @@ fn add_summary(path: &Path, report: &Report, site: &Site) -> Result<(), CliError
 /// Where a report lies in its repository.
 fn site(folder: &Path) -> Site {
     let current = std::env::current_dir().and_then(std::fs::canonicalize).unwrap_or_default();
-    // A folder that is reached by a link is told as what it is.
-    let folder = std::fs::canonicalize(folder).unwrap_or_else(|_| folder.to_path_buf());
-    Site::new(&repository(&current), &current, &folder)
+    Site::new(&repository(&current), &current, &real(folder))
+}
+
+/// A folder that is reached by a link is told as what it is.
+fn real(folder: &Path) -> PathBuf {
+    std::fs::canonicalize(folder).unwrap_or_else(|_| folder.to_path_buf())
 }
 
 /// The root of the repository around a folder: as the server tells it, else where git's

@@ -4,7 +4,7 @@ use super::site::Site;
 use super::{github, gitlab, junit, markdown, sarif};
 use crate::report::json::Report;
 use crate::report::saved::{FileError, write_whole};
-use std::path::{Path, PathBuf};
+use std::path::Path;
 
 /// An output that is made from a report.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
@@ -40,8 +40,8 @@ impl Format {
         }
     }
 
-    /// Its files: their names and content.
-    fn files(self, report: &Report, site: &Site) -> Vec<(&'static str, String)> {
+    /// Its files: their names and content. `beside` the report they may show its pictures.
+    fn files(self, report: &Report, site: &Site, beside: bool) -> Vec<(&'static str, String)> {
         match self {
             // index.html draws on evidence too, and is made elsewhere.
             Self::Html => Vec::new(),
@@ -52,23 +52,23 @@ impl Format {
                 ("github-summary.md", github::summary_within(report, site, github::SUMMARY_BYTES)),
             ],
             Self::Gitlab => vec![("gl-code-quality-report.json", gitlab::gitlab(report, site))],
-            Self::Markdown => vec![("report.md", markdown::markdown(report, site))],
+            Self::Markdown => vec![("report.md", markdown::markdown(report, site, beside))],
         }
     }
 }
 
-/// Writes what is asked for into a folder; the paths written.
+/// Writes what is asked for into a folder; the names of the files.
 pub fn write_formats(
     report: &Report,
     formats: &[Format],
     site: &Site,
     folder: &Path,
-) -> Result<Vec<PathBuf>, FileError> {
+) -> Result<Vec<&'static str>, FileError> {
     let mut written = Vec::new();
-    for (name, text) in formats.iter().flat_map(|format| format.files(report, site)) {
-        let path = folder.join(name);
-        write_whole(&path, text.as_bytes())?;
-        written.push(path);
+    let beside = site.is_at(folder);
+    for (name, text) in formats.iter().flat_map(|format| format.files(report, site, beside)) {
+        write_whole(&folder.join(name), text.as_bytes())?;
+        written.push(name);
     }
     Ok(written)
 }

@@ -86,7 +86,7 @@ pub fn annotations(report: &Report, site: &Site) -> String {
 
 /// The summary of a step, in at most so many bytes.
 pub fn summary_within(report: &Report, site: &Site, bytes: usize) -> String {
-    cut(&blocks(report, site), bytes, site.report())
+    cut(&blocks(report, site, false), bytes, site.report())
 }
 
 #[cfg(test)]
@@ -161,7 +161,7 @@ mod tests {
             result.subject.name = format!("ggx-{k}:alpha=0.5");
             report.results.push(result);
         }
-        let whole = super::super::markdown::markdown(&report, &site());
+        let whole = super::super::markdown::markdown(&report, &site(), false);
         assert!(whole.len() > SUMMARY_BYTES, "{}", whole.len());
         let text = summary_within(&report, &site(), SUMMARY_BYTES);
         assert!(text.len() <= SUMMARY_BYTES && text.len() > SUMMARY_BYTES - 4096, "{}", text.len());

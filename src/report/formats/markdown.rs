@@ -14,21 +14,17 @@ use std::fmt::Write;
 /// Rows of a table that is still read.
 const ROWS: usize = 40;
 
-/// The whole file, with the pictures that lie beside it.
-pub fn markdown(report: &Report, site: &Site) -> String {
-    joined(&told(report, site, true))
+/// The whole file; with `pictures` where they lie beside it.
+pub fn markdown(report: &Report, site: &Site, pictures: bool) -> String {
+    joined(&blocks(report, site, pictures))
 }
 
-/// Its parts, without pictures: where it is shown they are not.
-pub fn blocks(report: &Report, site: &Site) -> Vec<Block> {
-    told(report, site, false)
-}
-
-fn told(report: &Report, site: &Site, pictures: bool) -> Vec<Block> {
+/// Its parts.
+pub fn blocks(report: &Report, site: &Site, pictures: bool) -> Vec<Block> {
     let found = findings(report, site);
     let mut blocks = vec![Block::new(headline(report)), Block::new(about(report))];
     blocks.extend(report.partial.as_ref().map(|p| Block::new(format!("**NOT COMPLETE**: {}", text(p)))));
-    blocks.extend(table(report).map(Block::new));
+    blocks.extend(table(report, site).map(Block::new));
     let wrong = |f: &&Finding| matches!(f.verdict, Verdict::Error | Verdict::Fail);
     blocks.extend(found.iter().filter(wrong).map(|f| Block::finding(section(f, pictures))));
     for (title, verdicts) in
@@ -98,7 +94,7 @@ fn about(report: &Report) -> String {
 }
 
 /// Subjects and checks; of many subjects those with trouble.
-fn table(report: &Report) -> Option<String> {
+fn table(report: &Report, site: &Site) -> Option<String> {
     let columns = columns(report);
     let mut rows: Vec<&str> = Vec::new();
     let mut met: BTreeSet<&str> = BTreeSet::new();
@@ -126,7 +122,7 @@ fn table(report: &Report) -> Option<String> {
     let heads: String = columns.iter().map(|check| format!(" {} |", text(&short(check)))).collect();
     let mut lines = vec![format!("| |{heads}"), format!("|---|{}", ":-:|".repeat(columns.len()))];
     for row in &rows {
-        let mut line = format!("| {} |", cell(row));
+        let mut line = format!("| {} |", cell(&site.portable(row)));
         for check in &columns {
             let shape = worst.get(&(*row, *check)).map_or(' ', |verdict| symbol(*verdict));
             write!(line, " {shape} |").expect("a string takes every text");
@@ -243,7 +239,7 @@ mod tests {
     use super::*;
 
     fn whole(report: &Report) -> String {
-        markdown(report, &site())
+        markdown(report, &site(), true)
     }
 
     #[test]
@@ -282,7 +278,7 @@ mod tests {
         assert_eq!(head(&found), "# ✓ no failure in 1 subject");
         found.results.clear();
         assert_eq!(head(&found), "# – nothing was checked");
-        assert!(table(&found).is_none());
+        assert!(table(&found, &site()).is_none());
     }
 
     #[test]
@@ -293,14 +289,14 @@ mod tests {
             result.subject.name = format!("model-{k}:a=1");
             report.results.push(result);
         }
-        let text = table(&report).unwrap();
+        let text = table(&report, &site()).unwrap();
         assert!(
             text.contains("| `ggx` |") && !text.contains("model-7") && !text.contains("lambert"),
             "{text}"
         );
         assert!(text.contains("Not in this table: 61 more rows without trouble.\n"), "{text}");
         report.results.iter_mut().for_each(|r| r.verdict = Verdict::Fail);
-        let text = table(&report).unwrap();
+        let text = table(&report, &site()).unwrap();
         assert!(text.contains(": 22 more rows with trouble.\n") && text.contains("model-7"), "{text}");
     }
 
@@ -333,7 +329,7 @@ mod tests {
         let mut report = report();
         report.results[3].plot = Some("plots/a.svg".into());
         assert!(whole(&report).contains("(plots/a.svg)"));
-        assert!(!joined(&blocks(&report, &site())).contains("plots/a.svg"));
+        assert!(!markdown(&report, &site(), false).contains("plots/a.svg"));
         for path in ["../x.svg", "/x.svg", "a) <b>", "https://x"] {
             report.results[3].plot = Some(path.into());
             assert!(!whole(&report).contains("!["), "{path}");

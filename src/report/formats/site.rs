@@ -15,6 +15,7 @@ pub struct Site {
     root: PathBuf,
     current: PathBuf,
     report: String,
+    folder: PathBuf,
 }
 
 /// A line of a file.
@@ -30,7 +31,8 @@ impl Site {
     /// Of a report in `folder`; `root` is that of the repository, `current` is what paths
     /// were typed in. Both are absolute.
     pub fn new(root: &Path, current: &Path, folder: &Path) -> Self {
-        let mut site = Self { root: root.into(), current: current.into(), report: REPORT.into() };
+        let mut site =
+            Self { root: root.into(), current: current.into(), report: REPORT.into(), folder: folder.into() };
         if let Some(found) = site.relative(&folder.join(REPORT)) {
             site.report = found;
         }
@@ -40,6 +42,11 @@ impl Site {
     /// report.json, from the root; without its folder where that lies elsewhere.
     pub fn report(&self) -> &str {
         &self.report
+    }
+
+    /// Whether that is the report's folder.
+    pub fn is_at(&self, folder: &Path) -> bool {
+        lexical(&self.current.join(folder)) == lexical(&self.current.join(&self.folder))
     }
 
     /// A path from the root; `None` of what lies elsewhere.
@@ -147,6 +154,7 @@ mod tests {
         assert_eq!(site().report(), "materials/out/report.json");
         let elsewhere = Site::new(Path::new("/repo"), Path::new("/repo"), Path::new("/tmp/out"));
         assert_eq!(elsewhere.report(), "report.json");
+        assert!(elsewhere.is_at(Path::new("../tmp/out")) && !elsewhere.is_at(Path::new("out")));
         let relative = |path: &str| site().relative(Path::new(path));
         assert_eq!(relative("./a/../b.toml").as_deref(), Some("materials/b.toml"));
         assert_eq!(relative("../b.toml").as_deref(), Some("b.toml"));
