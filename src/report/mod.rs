@@ -2,6 +2,7 @@
 
 mod build;
 mod carry;
+mod changes;
 mod diagnoses;
 mod folder;
 mod formats;

@@ -4,6 +4,7 @@ use super::site::{Site, Spot};
 use super::visible::{one_line, visible};
 use crate::bsdf::Transport;
 use crate::checks::Verdict;
+use crate::comparison::Comparison;
 use crate::report::json::{CheckResult, Diagnosis, Report, SubjectId};
 use crate::report::wording::{direction, effect};
 use std::collections::{BTreeMap, BTreeSet};
@@ -47,6 +48,8 @@ pub struct Finding<'a> {
     pub spot: Spot,
     /// The subject as people know it.
     pub name: String,
+    /// Whether the baseline has it too; `None` where there is no baseline.
+    pub known: Option<bool>,
 }
 
 /// How many times what is tolerated.
@@ -77,13 +80,16 @@ pub fn findings<'a>(report: &'a Report, site: &Site) -> Vec<Finding<'a>> {
             };
             let at = *places.entry((verdict, rule, &subject.name, &subject.label)).or_insert_with(|| {
                 let (spot, name) = (site.spot(report, subject), name(subject, site));
-                found.push(Finding { subject, rule, verdict, results: Vec::new(), diagnosis, spot, name });
+                let results = Vec::new();
+                found.push(Finding { subject, rule, verdict, results, diagnosis, spot, name, known: None });
                 found.len() - 1
             });
             found[at].results.push(result);
         }
     }
     for finding in &mut found {
+        let known = |c: &Comparison| finding.results.iter().all(|r| c.knows(r));
+        finding.known = report.comparison.as_ref().filter(|_| finding.is_wrong()).map(known);
         let order: Vec<&str> = finding.checks();
         let place = |r: &CheckResult| order.iter().position(|c| *c == r.check);
         finding.results.sort_by(|a, b| place(a).cmp(&place(b)).then(size(b).total_cmp(&size(a))));
@@ -92,6 +98,16 @@ pub fn findings<'a>(report: &'a Report, site: &Site) -> Vec<Finding<'a>> {
 }
 
 impl<'a> Finding<'a> {
+    /// Whether it fails a run that has no baseline.
+    pub fn is_wrong(&self) -> bool {
+        matches!(self.verdict, Verdict::Error | Verdict::Fail)
+    }
+
+    /// Whether the baseline fails so too, so that it fails no gate.
+    pub fn is_known(&self) -> bool {
+        self.known == Some(true)
+    }
+
     /// The clearest result of its first check.
     pub fn lead(&self) -> &'a CheckResult {
         self.results[0]
@@ -210,6 +226,7 @@ fn told(clearest: &CheckResult, directions: usize) -> String {
 mod tests {
     use super::super::examples::{report, site};
     use super::*;
+    use crate::comparison::compare;
 
     #[test]
     fn a_cause_stands_for_all_failures_of_its_subject() {
@@ -261,6 +278,20 @@ mod tests {
         let waived = found.last().unwrap();
         assert_eq!(waived.headline(), "goodness-of-fit fails, which is accepted: coat");
         assert_eq!(waived.rule, Rule::Check("goodness-of-fit"), "a cause is told of failures alone");
+    }
+
+    #[test]
+    fn what_the_baseline_has_too_is_known() {
+        let known = |before: &Report| {
+            let mut after = report();
+            after.comparison = Some(compare(before, &after));
+            findings(&after, &site()).iter().map(|f| f.known).collect::<Vec<_>>()
+        };
+        assert_eq!(known(&report()), [Some(true), None]);
+        let mut sound = report();
+        sound.results[3].verdict = Verdict::Pass;
+        assert_eq!(known(&sound), [Some(false), None]);
+        assert_eq!(findings(&report(), &site())[0].known, None);
     }
 
     #[test]

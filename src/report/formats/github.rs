@@ -14,9 +14,11 @@ const ANNOTATIONS: usize = 10;
 /// Bytes of a step's summary: over 1024 KiB GitHub drops it whole.
 pub const SUMMARY_BYTES: usize = 1 << 20;
 
-/// The command of a verdict; `None` of what needs nobody's attention.
-fn command(verdict: Verdict) -> Option<&'static str> {
-    match verdict {
+/// The command of a finding; `None` of what needs nobody's attention.
+fn command(finding: &Finding) -> Option<&'static str> {
+    match finding.verdict {
+        // It fails no gate.
+        _ if finding.is_known() => Some("notice"),
         Verdict::Error | Verdict::Fail => Some("error"),
         Verdict::Warn => Some("warning"),
         Verdict::Inconclusive => Some("notice"),
@@ -41,7 +43,8 @@ fn line(kind: &str, spot: Option<&Spot>, title: &str, message: &str) -> String {
 }
 
 fn annotation(kind: &str, finding: &Finding) -> String {
-    let mut message = vec![format!("{}: {}", finding.name, finding.headline())];
+    let known = if finding.is_known() { "as in the baseline: " } else { "" };
+    let mut message = vec![format!("{}: {known}{}", finding.name, finding.headline())];
     message.extend(finding.details());
     line(kind, Some(&finding.spot), &format!("gonio {}", finding.rule.id()), &visible(&message.join("\n")))
 }
@@ -64,7 +67,7 @@ pub fn annotations(report: &Report, site: &Site) -> String {
         ("warning", "warnings", warnings),
         ("notice", "notices", ANNOTATIONS - 1),
     ] {
-        let of: Vec<&Finding> = found.iter().filter(|f| command(f.verdict) == Some(kind)).collect();
+        let of: Vec<&Finding> = found.iter().filter(|f| command(f) == Some(kind)).collect();
         of.iter().take(most).for_each(|finding| text += &annotation(kind, finding));
         match of.len().saturating_sub(most) {
             0 => {}

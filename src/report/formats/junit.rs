@@ -85,7 +85,9 @@ fn test_case(
 fn status(report: &Report, result: &CheckResult) -> TestCaseStatus {
     let message = one_line(&result.message);
     let reason = in_short(result.reason.as_ref().unwrap_or(&result.message));
+    let known = report.comparison.as_ref().is_some_and(|c| c.knows(result));
     let (mut status, told) = match result.verdict {
+        _ if known => (TestCaseStatus::skipped(), format!("known: the baseline has it too: {message}")),
         Verdict::Pass => return TestCaseStatus::success(),
         Verdict::Fail => (TestCaseStatus::non_success(NonSuccessKind::Failure), message),
         Verdict::Error => (TestCaseStatus::non_success(NonSuccessKind::Error), reason),
@@ -156,6 +158,17 @@ mod tests {
         assert!(failure.contains("repair: divide by 4 wo·h") && failure.contains("\n$ gonio check ggx"));
         let root = xml.root_element();
         assert_eq!((root.attribute("failures"), root.attribute("errors")), (Some("2"), Some("1")));
+    }
+
+    #[test]
+    fn what_the_baseline_has_too_is_no_failure() {
+        let mut after = report();
+        after.comparison = Some(crate::comparison::compare(&report(), &after));
+        let text = junit(&after, &site());
+        let xml = roxmltree::Document::parse(&text).unwrap();
+        assert_eq!(all(&xml, "failure").len(), 0);
+        let known = |n: &&roxmltree::Node| n.attribute("message").unwrap_or("").starts_with("known: ");
+        assert_eq!(all(&xml, "skipped").iter().filter(known).count(), 2);
     }
 
     #[test]

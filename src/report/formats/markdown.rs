@@ -5,6 +5,8 @@ use super::manual::cause_page;
 use super::markdown_text::{Block, cell, code, fenced, joined, text};
 use super::site::Site;
 use crate::checks::Verdict;
+use crate::comparison::Comparison;
+use crate::report::changes::in_words;
 use crate::report::json::{CheckResult, Diagnosis, Report, WaiverRow, WaiverState};
 use crate::report::terminal::{columns, short, symbol};
 use crate::report::wording::facts;
@@ -25,8 +27,13 @@ pub fn blocks(report: &Report, site: &Site, pictures: bool) -> Vec<Block> {
     let mut blocks = vec![Block::new(headline(report)), Block::new(about(report))];
     blocks.extend(report.partial.as_ref().map(|p| Block::new(format!("**NOT COMPLETE**: {}", text(p)))));
     blocks.extend(table(report, site).map(Block::new));
-    let wrong = |f: &&Finding| matches!(f.verdict, Verdict::Error | Verdict::Fail);
-    blocks.extend(found.iter().filter(wrong).map(|f| Block::finding(section(f, pictures))));
+    blocks.extend(report.comparison.as_ref().map(|c| Block::new(changes(c))));
+    let (known, new): (Vec<&Finding>, _) = found.iter().filter(|f| f.is_wrong()).partition(|f| f.is_known());
+    blocks.extend(new.into_iter().map(|f| Block::finding(section(f, pictures))));
+    if !known.is_empty() {
+        blocks.push(Block::new("## As in the baseline"));
+        blocks.extend(known.into_iter().map(|f| Block::finding(item(f))));
+    }
     for (title, verdicts) in
         [("Not decided", &[Verdict::Warn, Verdict::Inconclusive][..]), ("Accepted", &[Verdict::Waived])]
     {
@@ -198,6 +205,27 @@ fn diagnosis(found: &Diagnosis, pictures: bool) -> String {
     }
     // Each on a line of its own.
     lines.join("  \n")
+}
+
+/// What changed since the baseline.
+fn changes(found: &Comparison) -> String {
+    let mut lines = vec![format!("## Since the report of {}\n", text(&found.before.started))];
+    for (word, list) in [("worse", &found.worse), ("better", &found.better), ("less sure", &found.less_sure)]
+    {
+        lines.extend(list.iter().take(ROWS).map(|c| format!("- **{word}**: {}", text(&in_words(c)))));
+        if list.len() > ROWS {
+            lines.push(format!("- **{word}**: and {} more", list.len() - ROWS));
+        }
+    }
+    for (word, names) in [("new", &found.added), ("gone", &found.removed)] {
+        if !names.is_empty() {
+            let shown: Vec<String> = names.iter().take(ROWS).map(|name| code(name)).collect();
+            let more = if names.len() > ROWS { ", …" } else { "" };
+            lines.push(format!("- **{word}**: {}{more}", shown.join(", ")));
+        }
+    }
+    lines.push(format!("- {} results are the same, {} fail in both", found.same, found.still_failing));
+    lines.join("\n")
 }
 
 /// A check that fails: at how many directions, and what the clearest shows.

@@ -13,6 +13,10 @@
 //! | `waived` | skipped, "waived: …" | `error` with an external suppression | – | – | a line |
 //! | `skipped` | skipped, its reason | – | – | – | counted |
 //!
+//! A failure or an error that the baseline of the run has too fails no gate: in JUnit it is
+//! skipped, "known: …", in SARIF its `baselineState` is `unchanged`, its annotation is a
+//! notice, and Markdown gives it a line.
+//!
 //! A run that was stopped early says so in all of them: a property of each JUnit suite,
 //! `executionSuccessful: false`, an annotation that warns, an issue of its own, and the
 //! first lines of the Markdown.

@@ -113,6 +113,8 @@ struct Entry {
     message: Message,
     locations: [Location; 1],
     partial_fingerprints: Fingerprints,
+    #[serde(skip_serializing_if = "Option::is_none")]
+    baseline_state: Option<&'static str>,
     #[serde(skip_serializing_if = "Vec::is_empty")]
     suppressions: Vec<Suppression>,
     properties: Properties,
@@ -226,6 +228,7 @@ fn result(finding: &Finding, index: &BTreeMap<String, usize>, site: &Site) -> En
             primary_location_line_hash: finding.fingerprint(),
             gonio: finding.fingerprint(),
         },
+        baseline_state: finding.known.map(|known| if known { "unchanged" } else { "new" }),
         suppressions: waived
             .then(|| Suppression { kind: "external", justification: justification() })
             .into_iter()
