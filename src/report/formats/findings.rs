@@ -162,7 +162,8 @@ impl<'a> Finding<'a> {
         if self.verdict == Verdict::Error {
             let why = lead.reason.as_ref().unwrap_or(&lead.message);
             lines.extend(visible(why).lines().map(str::to_string));
-            lines.push(format!("{} checks have no result", self.results.len()));
+            let checks: Vec<String> = self.checks().into_iter().map(one_line).collect();
+            lines.push(format!("no result of {}", checks.join(", ")));
         }
         for check in self.checks().into_iter().filter(|_| self.verdict != Verdict::Error) {
             let of: Vec<_> = self.results.iter().filter(|r| r.check == check).collect();
