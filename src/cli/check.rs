@@ -2,7 +2,7 @@
 
 use super::args::{Measuring, number, seconds};
 use super::error::CliError;
-use super::run::Request;
+use super::request::Request;
 use crate::bsdf::{ClaimsPatch, Transport};
 use crate::registry::{Registry, Spelling};
 use crate::suite::{Entry, Mistake, PHI, Plan, SuiteError, SuiteFile, expand, fraction, positive, set_claim};
