@@ -128,6 +128,6 @@ mod tests {
         assert_eq!(first.name.as_deref(), Some("HalfVectorJacobian"));
         assert!(first.help_uri.ends_with("/docs/causes/half-vector-jacobian.md"));
         assert!(rules.iter().all(|r| r.help_uri.starts_with("https://")));
-        assert!(rules.iter().all(|r| r.name.as_ref().is_none_or(|name| *name != r.id)));
+        assert!(rules.iter().all(|r| r.name.as_ref().is_none_or(|name| !name.eq_ignore_ascii_case(&r.id))));
     }
 }

@@ -207,6 +207,8 @@ mod tests {
         assert_eq!(at("./brdf.so:alpha=0.1", None), whole("materials/brdf.so", 1));
         assert_eq!(at("brdf.py#rough:alpha=0.1", None), whole("materials/brdf.py", 1));
         assert_eq!(at("node --check src/brdf.js", None), whole("materials/src/brdf.js", 1));
+        assert_eq!(at("./wrap.sh src/brdf.js", None), whole("materials/src/brdf.js", 1));
+        assert_eq!(at("./wrap.sh --fast", None), whole("materials/wrap.sh", 1));
         assert_eq!(at("/usr/bin/python3 ../brdf.py", None), whole("brdf.py", 1));
         assert_eq!(at("merl:file=data/red.binary", None), whole("materials/data/red.binary", 1));
         assert_eq!(at("/opt/brdf.so", None), whole("materials/out/report.json", 1));
