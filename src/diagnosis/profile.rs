@@ -48,7 +48,7 @@ impl Profile {
         if !evidence.description.has.pdf {
             return None;
         }
-        let (strips, _) = Plane::strips(evidence)?;
+        let strips = Plane::strips(evidence)?;
         let told = strips.iter().filter(|s| s.ratio().is_some());
         let bin = |s: &Strip| Bin { theta_deg: s.degrees, observed: s.observed, expected: s.expected };
         let bins: Vec<Bin> = told.map(bin).collect();

@@ -6,6 +6,9 @@ use serde::{Deserialize, Serialize};
 /// mantissa. What is left numbers the bins: four to a factor of two.
 const SHIFT: u32 = 50;
 
+/// Half a bin, so that weights that are 1 but for rounding share one.
+const HALF: u64 = 1 << (SHIFT - 1);
+
 /// Bins of all numbers without a sign.
 const BINS: usize = 1 << (63 - SHIFT);
 
@@ -25,12 +28,16 @@ pub struct LogWeights {
 }
 
 impl LogWeights {
-    /// Where the bin at this place of [`counts`](Self::counts) begins and ends. Four
-    /// bins of equal width make up a factor of two. `None` for bins of no number.
+    /// Where the bin at this place of [`counts`](Self::counts) begins and ends: a bin is
+    /// an eighth to a quarter of its
+    /// weights wide. `None` for bins of no number.
     pub fn edges(&self, place: usize) -> Option<(f64, f64)> {
         let bin = u64::from(self.first) + place as u64;
-        let [low, high] = [bin, bin + 1].map(|bin| f64::from_bits(bin << SHIFT));
-        (bin < BINS as u64 && high.is_finite()).then_some((low, high))
+        if !(1..BINS as u64).contains(&bin) {
+            return None;
+        }
+        let [low, high] = [bin, bin + 1].map(|bin| f64::from_bits((bin << SHIFT) - HALF));
+        high.is_finite().then_some((low, high))
     }
 
     /// Whether nothing was counted.
@@ -51,7 +58,7 @@ impl WeightTable {
     /// Counts rows of `channels` weights, of which none is negative.
     pub(super) fn look(&mut self, rows: &[f64], channels: usize) {
         // Masked, since −0 has a sign.
-        let mut count = |w: f64| self.0[(w.to_bits() >> SHIFT) as usize % BINS] += 1;
+        let mut count = |w: f64| self.0[((w.to_bits() + HALF) >> SHIFT) as usize % BINS] += 1;
         if channels == 1 {
             rows.iter().for_each(|w| count(*w));
         } else {
@@ -94,19 +101,21 @@ mod tests {
 
     #[test]
     fn each_weight_is_within_the_edges_of_its_bin() {
-        for w in [1e-300, 0.013, 0.5, 0.999, 1.0, 1.25, 1.7, 2.0, 3e7, 1e300] {
+        for w in [1e-300, 0.013, 0.5, 0.999, 1.0, 1.25, 1.7, 2.0, 3e7, 1e300f64] {
             let weights = counted(&[w], 1, 0);
             assert_eq!((weights.zero, &weights.counts[..]), (0, &[1][..]));
             let (low, high) = weights.edges(0).unwrap();
             assert!(low <= w && w < high && high / low <= 1.25, "{w}: {low} to {high}");
         }
+        let rounded = counted(&[1.0 - 1e-16, 1.0, 1.0 + 1e-15], 1, 0);
+        assert_eq!((rounded.counts.len(), rounded.edges(0)), (1, Some((0.9375, 1.125))));
     }
 
     #[test]
     fn zero_and_no_sample_are_counted_apart_and_rows_by_their_largest() {
         let weights = counted(&[0.0, -0.0, 0.0, 0.0, 0.25, 4.0, 4.0, 0.0], 2, 1);
         assert_eq!((weights.zero, &weights.counts[..]), (1, &[2][..]));
-        assert_eq!(weights.edges(0), Some((4.0, 5.0)));
+        assert_eq!(weights.edges(0), Some((3.75, 4.5)));
         assert!(!weights.is_empty() && counted(&[0.0], 1, 1).is_empty());
     }
 
@@ -118,7 +127,7 @@ mod tests {
             table.look(&rows, 1);
             table.add_to(&mut weights, 0);
         }
-        assert_eq!(weights.edges(0), Some((0.5, 0.625)));
+        assert_eq!(weights.edges(0), Some((0.46875, 0.5625)));
         assert_eq!(weights.counts, [1, 0, 0, 0, 3, 0, 0, 0, 2, 0, 0, 0, 1]);
     }
 
@@ -126,7 +135,6 @@ mod tests {
     fn bins_of_no_number_have_no_edges() {
         let weights = LogWeights { first: u32::MAX, counts: vec![1], zero: 0 };
         assert_eq!(weights.edges(0), None);
-        let last = counted(&[f64::MAX], 1, 0);
-        assert_eq!(last.edges(0), None, "its upper end is infinite");
+        assert_eq!(counted(&[f64::MAX], 1, 0).edges(0), None, "its upper end is infinite");
     }
 }

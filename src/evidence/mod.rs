@@ -1,6 +1,7 @@
 //! What is measured of one case: counts, integrals, pointwise identities.
 //! Gathered once, judged by every check, saved, and drawn.
 
+mod densities;
 mod draws;
 mod exact;
 mod facets;
@@ -24,6 +25,7 @@ mod tally;
 mod variations;
 
 pub use crate::bsdf::Figure;
+pub use densities::{Densities, azimuth_densities, plane_densities};
 pub use draws::{BLOCK, DiscreteLobe, Draws, SERIAL, Sums};
 pub use exact::Repeats;
 pub use facets::{Estimate, Facets};

@@ -2,18 +2,17 @@
 
 use super::gathered::Evidence;
 use super::stretch::Stretch;
-use super::strips::{Strip, cells, strips};
+use super::strips::{Strip, Widths, cells, strips};
 use crate::bsdf::Direction;
 
 /// Cells are near the plane whose middle is within so many degrees of it.
 const NEAR: f64 = 8.0;
 
-/// Degrees of a strip along the plane: at least where there are enough samples, and at
-/// most.
-const THETA: (f64, f64) = (3.0, 15.0);
+/// Strips along the plane.
+const THETA: Widths = Widths { finest: 3.0, coarsest: 15.0, share: 1.0 / 24.0 };
 
-/// The same around the normal.
-const PHI: (f64, f64) = (10.0, 30.0);
+/// Strips around the normal.
+const PHI: Widths = Widths { finest: 10.0, coarsest: 30.0, share: 1.0 / 20.0 };
 
 /// The plane of incidence of one wo.
 #[derive(Clone, Copy, Debug, PartialEq)]
@@ -48,15 +47,32 @@ impl Plane {
         (wi.y * self.cos - wi.x * self.sin).clamp(-1.0, 1.0).asin().abs().to_degrees()
     }
 
-    /// A case's cells near the plane, by θ, and the number of draws. `None` where
-    /// nothing was drawn or integrated.
-    pub fn strips(evidence: &Evidence) -> Option<(Vec<Strip>, f64)> {
+    /// The direction so many degrees off the plane.
+    pub(super) fn beside(&self, theta: f64, off: f64) -> Direction {
+        let (sin, cos) = off.to_radians().sin_cos();
+        self.direction(theta) * cos + Direction::new(-self.sin, self.cos, 0.0) * sin
+    }
+
+    /// How a case's lobe is seen along the plane, and how far off it cells are near.
+    fn seen(&self, cells: &[(Direction, Strip)]) -> Stretch {
+        let near = cells.iter().filter(|(wi, _)| self.off(*wi) <= NEAR);
+        Stretch::of(near.map(|(_, c)| (c.degrees, c.observed + c.expected)))
+    }
+
+    /// A case's cells near the plane, by θ. `None` where nothing was drawn or integrated.
+    pub fn strips(evidence: &Evidence) -> Option<Vec<Strip>> {
         let plane = Self::of(evidence.wo);
-        let (mut cells, draws) = cells(evidence, |wi| plane.theta(wi))?;
-        cells.retain(|(wi, _)| plane.off(*wi) <= NEAR);
-        let stretch = Stretch::of(cells.iter().map(|(_, c)| (c.degrees, c.observed + c.expected)));
+        let mut cells = cells(evidence, |wi| plane.theta(wi))?;
+        let stretch = plane.seen(&cells);
         cells.retain(|(wi, c)| plane.off(*wi) <= stretch.near(c.degrees, NEAR));
-        Some((strips(cells.into_iter().map(|(_, cell)| cell).collect(), THETA.0, THETA.1), draws))
+        Some(strips(cells.into_iter().map(|(_, cell)| cell).collect(), &THETA))
+    }
+
+    /// How a case's lobe is seen along the plane, and how many degrees off it at an angle
+    /// still belong to it. `None` where nothing was drawn or integrated.
+    pub(super) fn stretch(&self, evidence: &Evidence) -> Option<(Stretch, impl Fn(f64) -> f64)> {
+        let stretch = self.seen(&cells(evidence, |wi| self.theta(wi))?);
+        Some((stretch, move |theta: f64| stretch.near(theta, NEAR)))
     }
 }
 
@@ -68,11 +84,10 @@ pub fn forward_azimuth(wo: Direction, wi: Direction) -> f64 {
     (-across).atan2(-along).to_degrees()
 }
 
-/// A case's cells by [`forward_azimuth`], and the number of draws. `None` where nothing
-/// was drawn or integrated.
-pub fn azimuths(evidence: &Evidence) -> Option<(Vec<Strip>, f64)> {
-    let (cells, draws) = cells(evidence, |wi| forward_azimuth(evidence.wo, wi))?;
-    Some((strips(cells.into_iter().map(|(_, cell)| cell).collect(), PHI.0, PHI.1), draws))
+/// A case's cells by [`forward_azimuth`]. `None` where nothing was drawn or integrated.
+pub fn azimuths(evidence: &Evidence) -> Option<Vec<Strip>> {
+    let cells = cells(evidence, |wi| forward_azimuth(evidence.wo, wi))?;
+    Some(strips(cells.into_iter().map(|(_, cell)| cell).collect(), &PHI))
 }
 
 #[cfg(test)]
@@ -91,6 +106,8 @@ mod tests {
             for x in [-120.0, -30.0, 0.0, 80.0, 170.0] {
                 let wi = plane.direction(x);
                 assert!((plane.theta(wi) - x).abs() < 1e-9 && plane.off(wi) < 1e-9);
+                let beside = plane.beside(x, -5.0);
+                assert!((plane.theta(beside) - x).abs() < 1e-9 && (plane.off(beside) - 5.0).abs() < 1e-9);
             }
             assert!((plane.off(wo.rotated(std::f64::consts::FRAC_PI_2)) - from_normal).abs() < 1e-9);
             assert!(forward_azimuth(wo, wo.mirrored()).abs() < 1e-9);

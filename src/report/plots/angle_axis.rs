@@ -85,8 +85,9 @@ impl AngleAxis {
             if x > axes.from.0 + 2.0 && x < axes.to.0 - 2.0 {
                 figure.line(&[(x, axes.from.1), (x, bottom)], Pen::new(SOFT_INK, 1.0).opacity(0.5));
             }
-            let room = x - last > 8.0 * name.chars().count() as f64 + 20.0;
-            if room && x > axes.from.0 + 24.0 && x < axes.to.0 - 24.0 {
+            let reach = 4.0 * name.chars().count() as f64 + 4.0;
+            let room = x - last > 2.0 * reach + 12.0;
+            if room && x > axes.from.0 + reach && x < axes.to.0 - reach {
                 let how = Type::new(Anchor::Middle).size(15.0).colour(SOFT_INK).rim();
                 figure.text((x, bottom - 12.0), name, how);
                 last = x;

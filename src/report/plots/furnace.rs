@@ -1,12 +1,13 @@
 //! Flux against angle: what a surface gives back where 1 arrives, as the checks of
 //! energy and of the white furnace compute it.
 
-use super::albedo::WIDTH;
 use super::axes::{Axes, error_bar, even_ticks, mark};
 use super::by_theta::{self, Point, points};
 use super::colours::{INK, LINES, SOFT_INK};
 use super::figure::{Anchor, Figure, Pen, Type, shortened};
 use crate::evidence::{Evidence, Flux};
+
+const WIDTH: f64 = 800.0;
 
 /// The lower part shows at least this much on either side of its values.
 const LEAST: f64 = 1e-3;
@@ -67,7 +68,7 @@ pub fn furnace(subject: &str, cases: &[&Evidence]) -> Option<String> {
     let mut figure = Figure::new(WIDTH, 570.0, &title, description);
     figure.text((20.0, 26.0), &shortened(subject, 56), Type::new(Anchor::Start).size(20.0).bold());
     figure.text((20.0, 52.0), "flux that leaves where 1 arrives, against θo", Type::new(Anchor::Start));
-    let upper = Axes { from: (96.0, 76.0), to: (590.0, 310.0), x: (0.0, right), y: (0.0, top) };
+    let upper = Axes { from: (96.0, 88.0), to: (590.0, 310.0), x: (0.0, right), y: (0.0, top) };
     let percent = (100.0 * (low - margin), 100.0 * (high + margin));
     let lower = Axes { from: (96.0, 336.0), to: (590.0, 510.0), x: (0.0, right), y: percent };
     upper.ticks_y(&mut figure, &even_ticks(upper.y, 5.0));
@@ -120,7 +121,7 @@ pub fn furnace(subject: &str, cases: &[&Evidence]) -> Option<String> {
     if both {
         for (x, anchor, name) in [(86.0, Anchor::End, "front"), (94.0, Anchor::Start, "back")] {
             let at = upper.place(x, top);
-            figure.text((at.0, at.1 + 14.0), name, Type::new(anchor).size(15.0).colour(SOFT_INK).rim());
+            figure.text((at.0, at.1 - 10.0), name, Type::new(anchor).size(15.0).colour(SOFT_INK));
         }
     }
     let mut notes = vec!["dashed at 1: lossless".to_string()];
@@ -176,6 +177,8 @@ mod tests {
     #[test]
     fn transmission_counts_by_flux() {
         let mut cases = of(GLASS, &[30.0]);
+        // Made-up values that are not reciprocal look as those of importance.
+        cases[0].pairs = None;
         let value = |case: &Evidence| flux(case, 0).unwrap();
         let before = value(&cases[0]);
         cases[0].description.claims.eta = Some(1.5);

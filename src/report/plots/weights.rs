@@ -97,15 +97,13 @@ pub fn picture(evidence: &Evidence) -> Option<String> {
     let y = (-0.3, (most as f64).log10() + 0.3);
     let axes = Axes { from: (96.0, 80.0), to: (570.0, 410.0), x, y };
     let place = |w: f64, n: f64| axes.clamped(w.log10().clamp(x.0, x.1), n.max(0.5).log10());
-    for bar in bars.iter().filter(|b| b.samples > 0) {
-        figure.rectangle(place(bar.low, bar.samples as f64), place(bar.high, 0.5), BAND);
-    }
     let mut outline = vec![place(first.low, 0.5)];
     for bar in &bars {
         outline.extend([bar.low, bar.high].map(|w| place(w, bar.samples as f64)));
     }
     outline.push(place(last.high, 0.5));
     outline.dedup();
+    figure.polygon(&outline, BAND);
     figure.line(&outline, Pen::new(LINES[0], 1.8));
     axes.ticks_x(&mut figure, &log_ticks(x, 8));
     axes.ticks_y(&mut figure, &log_ticks(y, 8));
@@ -129,7 +127,10 @@ pub fn picture(evidence: &Evidence) -> Option<String> {
         told.push((None, "(by cubature)".into()));
     }
     let n = draws.samples;
-    let percent = |part: u64| three_digits(100.0 * part as f64 / n.max(1) as f64);
+    let percent = |part: u64| match part {
+        0 => "0".into(),
+        part => three_digits(100.0 * part as f64 / n.max(1) as f64),
+    };
     if let Some(share) = effective(draws) {
         let effective = (share * n as f64).round() as u64;
         told.push((None, String::new()));
@@ -178,9 +179,11 @@ mod tests {
         let bars = bars(draws);
         draws.samples = zero + bars.iter().map(|b| b.samples).sum::<u64>();
         draws.weight.count = draws.samples;
-        draws.weight.sum = vec![bars.iter().map(|b| b.samples as f64 * b.low).sum(); 3];
-        draws.weight.square = vec![bars.iter().map(|b| b.samples as f64 * b.low * b.low).sum(); 3];
-        draws.weight.largest = Number(bars.last().map_or(0.0, |b| b.low));
+        // Powers of two, which the tests are about.
+        let weight = |b: &Bar| b.low / 0.9375;
+        draws.weight.sum = vec![bars.iter().map(|b| b.samples as f64 * weight(b)).sum(); 3];
+        draws.weight.square = vec![bars.iter().map(|b| b.samples as f64 * weight(b).powi(2)).sum(); 3];
+        draws.weight.largest = Number(bars.last().map_or(0.0, weight));
         evidence
     }
 
@@ -207,7 +210,8 @@ mod tests {
     #[test]
     fn what_cubature_met_beyond_the_largest_is_drawn() {
         let mut evidence = weighing(vec![1000], 100);
-        assert!(!picture(&evidence).unwrap().contains("by cubature") || evidence.integrals.is_none());
+        evidence.integrals.as_mut().unwrap().largest_weight = 0.125;
+        assert!(!picture(&evidence).unwrap().contains("by cubature"));
         evidence.integrals.as_mut().unwrap().largest_weight = 50.0;
         let svg = picture(&evidence).unwrap();
         assert!(svg.contains("by cubature") && svg.contains("weight 0: 100 (9.09 %)"), "{svg}");
