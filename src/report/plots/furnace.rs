@@ -108,9 +108,13 @@ pub fn furnace(subject: &str, cases: &[&Evidence]) -> Option<String> {
             error_bar(&mut figure, ends, colour, true);
             mark(&mut figure, lower.clamped(p.theta, off(0.0)), series, colour);
             if split {
-                let letter = Type::new(Anchor::Middle).size(13.0).colour(colour).rim();
-                figure.text(upper.clamped(p.theta, p.found.reflected), "R", letter);
-                figure.text(upper.clamped(p.theta, p.found.transmitted), "T", letter);
+                let letter = Type::new(Anchor::Middle).size(14.0).colour(colour).bold();
+                for (value, name) in [(p.found.reflected, "R"), (p.found.transmitted, "T")] {
+                    // Beside its line, and within the frame.
+                    let aside = if value < 0.1 * top { -11.0 } else { 11.0 };
+                    let (x, y) = upper.clamped(p.theta, value);
+                    figure.text((x, y + aside), name, letter);
+                }
             }
         }
         let y = 100.0 + 26.0 * series as f64;

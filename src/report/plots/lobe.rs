@@ -259,10 +259,10 @@ fn closer(figure: &mut Figure, curves: &[Curve], evidence: &Evidence, stretch: S
     if evidence.description.kind == SubjectKind::Bsdf {
         marks.push((Plane::of(evidence.wo).theta(evidence.wo.mirrored()), "mirror"));
     }
-    angles.landmarks(figure, &axes, &marks);
     for curve in curves {
         draw_curve(figure, curve, |x, d| axes.clamped(angles.place(x), d.max(1e-300).log10()));
     }
+    angles.landmarks(figure, &axes, &marks);
 }
 
 fn legend(figure: &mut Figure, curves: &[Curve], evidence: &Evidence, polar: &Polar, height: f64) {
