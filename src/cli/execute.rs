@@ -98,8 +98,10 @@ fn run(
         }
     });
     progress.finish();
+    let diagnosed = diagnose_all(&results, &request.explanations, &options);
+    let mut diagnoses = Diagnosis::all(&results, diagnosed);
     let plots = match (&folder, request.plots.which()) {
-        (Some(folder), Some(which)) => draw_results(folder, &results, which),
+        (Some(folder), Some(which)) => draw_results(folder, &results, &diagnoses, which),
         _ => Ok(BTreeMap::new()),
     };
     let (plots, unwritten) = match plots {
@@ -113,8 +115,6 @@ fn run(
         plot: &|case| plots.get(&case.index).cloned(),
         time_s: request.time_s,
     };
-    let diagnosed = diagnose_all(&results, &request.explanations, &options);
-    let mut diagnoses = Diagnosis::all(&results, diagnosed);
     let drawn = match (&folder, request.plots.which()) {
         (Some(folder), Some(_)) => draw_diagnoses(folder, &mut diagnoses),
         _ => Ok(()),

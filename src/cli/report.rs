@@ -29,7 +29,7 @@ pub struct ReportArgs {
 /// Draws the pictures of a saved report again, and tells its diagnoses: they were
 /// made with the subject at hand, which evidence is not. Or writes other formats.
 pub fn report(args: &ReportArgs, voice: Voice) -> Result<Exit, CliError> {
-    let (folder, report) = read(&args.folder)?;
+    let (folder, mut report) = read(&args.folder)?;
     if !args.outputs.to.is_empty() {
         let out = args.out.as_deref().unwrap_or(&folder);
         let to = Destination { report: &folder, out, stdout_is_taken: false, quiet: voice.quiet };
@@ -37,7 +37,7 @@ pub fn report(args: &ReportArgs, voice: Voice) -> Result<Exit, CliError> {
         return Ok(Exit::Passed);
     }
     let drawn = match args.plots.which() {
-        Some(which) => redraw(&folder, &report, which)?,
+        Some(which) => redraw(&folder, &mut report, which)?,
         None => 0,
     };
     if !voice.quiet {
