@@ -11,8 +11,8 @@ use crate::engine::{self, Event, Options};
 use crate::evidence::Meter;
 use crate::registry::{Registry, nearest};
 use crate::report::{
-    Diagnosis, FileError, Files, REPORT, Report, draw_diagnoses, draw_results, evidence_of, summary,
-    write_evidence, write_report,
+    Diagnosis, FileError, Files, REPORT, Report, draw_diagnoses, draw_results, evidence_of, html,
+    summary, write_evidence, write_report,
 };
 use crate::suite::{EMBEDDED, Expanded, Plan, embedded, load, reproduce};
 use std::collections::{BTreeMap, BTreeSet};
@@ -216,7 +216,11 @@ fn run(
     };
     let unwritten = unwritten.or(drawn.err());
     let report = Report::new(plan, &results, started, &files).diagnosed(diagnoses);
-    let written = folder.as_ref().map(|folder| write_report(folder, &report)).transpose();
+    let written = folder.as_ref().map(|folder| {
+        write_report(folder, &report)?;
+        html::write(folder, &report, None)
+    });
+    let written = written.transpose();
     if !voice.quiet {
         tell(&page(&report, folder.as_deref(), voice));
     }
@@ -235,7 +239,7 @@ fn run(
 /// The page for people.
 fn page(report: &Report, folder: Option<&Path>, voice: Voice) -> String {
     let path = |name: &str| folder.map(|f| f.join(name).display().to_string()).unwrap_or_default();
-    let paths = [("report", path(REPORT)), ("evidence", path("evidence")), ("pictures", path("plots"))];
+    let paths = [("page", path(html::PAGE)), ("report", path(REPORT)), ("evidence", path("evidence")), ("pictures", path("plots"))];
     let files: Vec<(&str, &str)> = match folder {
         Some(_) => paths.iter().map(|(what, path)| (*what, path.as_str())).collect(),
         None => Vec::new(),

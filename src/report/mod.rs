@@ -3,6 +3,7 @@
 mod build;
 mod diagnoses;
 mod folder;
+pub mod html;
 mod json;
 mod plots;
 mod saved;

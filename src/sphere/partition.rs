@@ -271,8 +271,23 @@ impl Partition {
                 self.split_evenly(node, EMPTY_DEPTH);
             }
         }
-        self.number_leaves();
-        self
+        self.in_saved_order()
+    }
+
+    /// The same tree with its nodes numbered as they are when it is read again, lower
+    /// parts first: counts are saved by leaf, and must mean the same leaf then.
+    fn in_saved_order(self) -> Self {
+        let mut tree = Self::sphere(self.chart);
+        let mut open = vec![(2, 2), (1, 1)];
+        while let Some((from, to)) = open.pop() {
+            if let Some([left, right]) = self.children(from) {
+                let cut = self.nodes[from];
+                let child = tree.split(to, cut.axis as usize, cut.at);
+                open.extend([(right, child + 1), (left, child)]);
+            }
+        }
+        tree.number_leaves();
+        tree
     }
 
     /// The leaf that holds a point.
@@ -535,6 +550,17 @@ mod tests {
             let tree = Partition::build(Chart::new(0.0), points, 1024);
             assert!(tree.len() >= 17 && tree.len() < 200, "{}", tree.len());
         }
+    }
+
+    /// Counts are saved by leaf.
+    #[test]
+    fn a_refined_tree_keeps_the_numbers_of_its_leaves() {
+        let tree = Partition::build(Chart::new(0.3), random(1 << 12, 1), 256);
+        let marked: Vec<bool> = (0..tree.len()).map(|leaf| leaf % 7 == 0).collect();
+        let refined = tree.clone().refined(&marked);
+        assert!(refined.len() > tree.len());
+        let again: Partition = serde_json::from_str(&serde_json::to_string(&refined).unwrap()).unwrap();
+        assert_eq!(again, refined);
     }
 
     #[test]

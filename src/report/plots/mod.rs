@@ -2,7 +2,7 @@
 
 mod axes;
 mod chosen;
-mod colours;
+pub(super) mod colours;
 mod curves;
 mod disc;
 mod disc_frame;
@@ -29,5 +29,6 @@ pub use matrix_plot::{Mark, MatrixPlot, MatrixRow};
 pub use reciprocity_map::picture as reciprocity_picture;
 
 pub(super) use chosen::file_name;
+pub(super) use disc::{Scale, scale as disc_scale};
 pub(super) use figure::shortened;
 pub(super) use ratio_plot::ratio as ratio_picture;
