@@ -89,7 +89,6 @@ pub fn counts(report: &Report) -> Vec<(String, Verdict, &'static str)> {
 pub fn facts(report: &Report, subjects: &[Subject]) -> Vec<(&'static str, String)> {
     let cases = subjects.iter().map(|s| s.cases.len()).sum();
     let mut facts = vec![
-        ("suite", report.suite.clone()),
         ("measured", format!("{} in {}", counted(subjects.len(), "subject"), counted(cases, "case"))),
         ("seed", report.seed.to_string()),
         (

@@ -1,6 +1,8 @@
 // Discs of a case: what the sampler drew, what pdf says, and by how much they differ.
 
 const SIDE = 264;
+// Lines and letters are sharper than cells, which need no more than a pixel.
+const SHARP = 2;
 const DENSITY_STEPS = 64;
 const NAMES = ["samples", "pdf", "difference"];
 const degrees = (radians) => (radians * 180) / Math.PI;
@@ -150,7 +152,8 @@ class Discs {
         ? cells.observed.map((_, leaf) => residual(cells, leaf, this.scales))
         : null;
     this.zoomLabel.hidden = sides.every((front) => lobeWindow(cells, front, this.scales) === WHOLE);
-    this.reading.textContent = "Point at a cell, or focus the discs and use the arrow keys, to read it.";
+    this.reading.textContent =
+      "Point at a cell, or focus the discs and use the arrow keys, to read it. Ring: wo; cross: its mirror direction.";
     this.rows.replaceChildren();
     if (sides.length === 0) this.reading.textContent = "Nothing was drawn here, and pdf is 0.";
     for (const front of sides) {
@@ -171,7 +174,7 @@ class Discs {
     });
     const leaves = this.leaves(front, window);
     const drawn = panels.map((values, k) => {
-      const canvas = element("canvas", { width: SIDE, height: SIDE, role: "img" });
+      const canvas = element("canvas", { width: SHARP * SIDE, height: SHARP * SIDE, role: "img" });
       const scale = k < 2 ? this.densityScale(largest) : this.residualScale();
       const title = named ? `${NAMES[k]} (${side})` : NAMES[k];
       const caption = element("figcaption", {}, element("b", {}, title), " ", scale.told);
@@ -179,7 +182,7 @@ class Discs {
       if (!values) {
         canvas.setAttribute("aria-label", `${title}: not measured`);
         caption.replaceChildren(element("b", {}, title), " not measured");
-        return canvas.getContext("2d").getImageData(0, 0, SIDE, SIDE);
+        return null;
       }
       canvas.setAttribute("aria-label", `${title} ${this.alternative(values, k, front)}`);
       return this.paint(canvas, leaves, values, scale, front, window);
@@ -189,6 +192,7 @@ class Discs {
     const move = (x, y) => {
       state.place = [Math.min(Math.max(x, 0), SIDE - 1), Math.min(Math.max(y, 0), SIDE - 1)];
       canvases.forEach((canvas, k) => {
+        if (!drawn[k]) return;
         const context = canvas.getContext("2d");
         context.putImageData(drawn[k], 0, 0);
         this.crosshair(context, state.place);
@@ -263,16 +267,21 @@ class Discs {
 
   paint(canvas, leaves, values, scale, front, window) {
     const context = canvas.getContext("2d", { willReadFrequently: true });
-    const image = context.createImageData(SIDE, SIDE);
+    const coarse = element("canvas", { width: SIDE, height: SIDE });
+    const image = new ImageData(SIDE, SIDE);
     const colours = Array.from(values, (value) => scale.colour(value));
     leaves.forEach((leaf, k) => {
       if (leaf < 0) return;
       image.data.set(colours[leaf], 4 * k);
       image.data[4 * k + 3] = 255;
     });
-    context.putImageData(image, 0, 0);
+    coarse.getContext("2d").putImageData(image, 0, 0);
+    context.scale(SHARP, SHARP);
+    context.imageSmoothingEnabled = false;
+    context.drawImage(coarse, 0, 0);
+    context.lineJoin = "round";
     this.graticule(context, front, window);
-    return context.getImageData(0, 0, SIDE, SIDE);
+    return context.getImageData(0, 0, SHARP * SIDE, SHARP * SIDE);
   }
 
   /** Lines of equal θ and φ, wo as a ring and its mirror direction as a cross. */
