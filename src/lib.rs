@@ -13,6 +13,7 @@ pub mod calibration;
 pub mod cause;
 pub mod checks;
 pub mod cli;
+pub mod comparison;
 pub mod diagnosis;
 pub mod engine;
 pub mod evidence;

@@ -70,6 +70,7 @@ fn pages() -> &'static Path {
             serde_json::from_slice(&std::fs::read(failing.join("report.json")).unwrap()).unwrap();
         hostile(&pages, &report);
         detached(&pages, &report);
+        compared(&pages, &report);
         shapes(&pages, &report);
         pages
     })
@@ -108,16 +109,39 @@ fn hostile(pages: &Path, report: &Report) {
     report.suite = HOSTILE.into();
     report.partial = Some(HOSTILE.into());
     write_report(&folder, &report).unwrap();
-    html::write(&folder, &report, None).unwrap();
+    html::write(&folder, &report).unwrap();
 }
 
 /// A page that has lost its evidence, which lies elsewhere.
 fn detached(pages: &Path, report: &Report) {
     let folder = pages.join("detached");
     std::fs::create_dir_all(&folder).unwrap();
-    html::write(&folder, report, None).unwrap();
+    html::write(&folder, report).unwrap();
     // Too late for the page to carry it, in time for the browser to fetch it.
     linked(pages, "detached");
+}
+
+/// A page that tells what changed since a report in which another subject failed.
+fn compared(pages: &Path, report: &Report) {
+    let folder = linked(pages, "compared");
+    write_report(&folder, report).unwrap();
+    let mut before = report.clone();
+    for result in &mut before.results {
+        match (result.subject.name.as_str(), result.check.as_str()) {
+            ("lambert", "energy") => result.verdict = Verdict::Fail,
+            ("mutant-no-jacobian", "normalization") => result.verdict = Verdict::Pass,
+            _ => {}
+        }
+    }
+    before.results.retain(|r| !r.subject.name.starts_with("rough-dielectric"));
+    let earlier = pages.join("earlier");
+    write_report(&earlier, &before).unwrap();
+    let run = Command::new(env!("CARGO_BIN_EXE_gonio"))
+        .args(["report", "--plots", "none", "--baseline"])
+        .args([&earlier, &folder])
+        .output()
+        .unwrap();
+    assert!(run.status.success(), "{}", String::from_utf8_lossy(&run.stderr));
 }
 
 /// Cells in charts of every shape, and what the library finds at directions.
@@ -154,7 +178,7 @@ fn shapes(pages: &Path, report: &Report) {
     }
     let report = Report { results, diagnoses: Vec::new(), ..report.clone() };
     write_report(&folder, &report).unwrap();
-    html::write(&folder, &report, None).unwrap();
+    html::write(&folder, &report).unwrap();
     std::fs::write(folder.join("expected.json"), serde_json::to_vec(&expected).unwrap()).unwrap();
 }
 
@@ -197,7 +221,8 @@ fn large(pages: &Path) {
     let (passing, failing) = (of("torrance-sparrow:alpha=0.5"), of("mutant-no-jacobian"));
     assert!(!passing.is_empty() && !failing.is_empty());
     let found = report.diagnoses.iter().find(|d| d.subject == "mutant-no-jacobian").unwrap();
-    let mut large = Report { results: Vec::new(), diagnoses: Vec::new(), waivers: Vec::new(), ..report.clone() };
+    let mut large =
+        Report { results: Vec::new(), diagnoses: Vec::new(), waivers: Vec::new(), ..report.clone() };
     let mut cases = 0;
     for number in 0..2000 {
         let wrong = number % 50 == 7;
@@ -228,7 +253,7 @@ fn large(pages: &Path) {
     let met: BTreeSet<&str> = large.results.iter().map(|r| r.check.as_str()).collect();
     assert_eq!((names.len(), met.len()), (2000, 12));
     let begun = Instant::now();
-    let path = html::write(&folder, &large, None).unwrap();
+    let path = html::write(&folder, &large).unwrap();
     let size = std::fs::metadata(path).unwrap().len();
     println!("{cases} cases: {:.1} MB in {:.1} s", size as f64 / 1e6, begun.elapsed().as_secs_f64());
     assert!(size < 20_000_000, "{size} bytes");

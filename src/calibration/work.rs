@@ -81,7 +81,7 @@ impl<'w> Work<'w> {
     ) -> Result<Self, rayon::ThreadPoolBuildError> {
         let name = |k| format!("gonio-{k}");
         let pool = ThreadPoolBuilder::new().num_threads(threads.unwrap_or(0)).thread_name(name).build()?;
-        let options = Options { threads: Some(1), stop: progress.stop().clone(), deadline: None };
+        let options = Options { threads: Some(1), stop: progress.stop().clone(), ..Options::default() };
         Ok(Self { effort, seed, trials: super::confusion::TRIALS, progress, pool, options, observe })
     }
 

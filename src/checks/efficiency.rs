@@ -51,7 +51,11 @@ impl Check for Efficiency {
             second - albedo * albedo,
             integrals.largest_weight
         );
-        let effect = Effect::exact("effective draws per draw", effective, 0.0);
+        let off = integrals.albedo(channel).1;
+        let of = |albedo: f64, second: f64| albedo * albedo / second.max(f64::MIN_POSITIVE);
+        let (low, high) = (of((albedo - off).max(0.0), second + error), of(albedo + off, second - error));
+        let interval = (effective, low, high.min(1.0).max(effective));
+        let effect = Effect::interval("effective draws per draw", interval, 0.0);
         Outcome { effect: Some(effect), channel: Some(channel), ..Outcome::new(Verdict::Pass, message) }
             .into()
     }

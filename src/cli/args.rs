@@ -1,6 +1,6 @@
 //! What may be typed.
 
-use super::{calibrate, check, completions, explain, figures, list, new, report, run, schema, worker};
+use super::{calibrate, check, completions, diff, explain, figures, list, new, report, run, schema, worker};
 use crate::checks;
 use crate::registry::nearest;
 use crate::report::Which;
@@ -38,6 +38,8 @@ pub enum Command {
     Explain(explain::ExplainArgs),
     /// Draw the pictures of a saved report again, and tell its diagnoses.
     Report(report::ReportArgs),
+    /// Tell what got worse and what got better from one report to another.
+    Diff(diff::DiffArgs),
     /// Draw the figures of a lecture on reflection, from the built-in models.
     Figures(figures::FiguresArgs),
     /// Write a plugin to start from, in a language of your choice.
@@ -146,6 +148,19 @@ pub struct Measuring {
     /// Load shared libraries into gonio itself: faster, and a crash is a crash of gonio.
     #[arg(long, help_heading = "Plugins")]
     pub in_process: bool,
+    /// Fail only on what got worse since this report, and tell what got better.
+    #[arg(long, value_name = "REPORT", help_heading = "Gates")]
+    pub baseline: Option<PathBuf>,
+    /// Measure only subjects that are not what they were in this report; take the results
+    /// of the others from it.
+    #[arg(long, value_name = "REPORT", help_heading = "Gates")]
+    pub changed_since: Option<PathBuf>,
+    /// Spend this much time where it buys most, as 30s or 5m, in place of a number of samples.
+    #[arg(long, value_name = "TIME", value_parser = duration, help_heading = "Gates", conflicts_with = "samples")]
+    pub time: Option<Duration>,
+    /// Give each case the draws that it had in this report of a run with --time.
+    #[arg(long, value_name = "REPORT", help_heading = "Gates", conflicts_with_all = ["time", "samples"])]
+    pub allocation: Option<PathBuf>,
     /// What comes out.
     #[arg(long, value_enum, default_value_t)]
     pub format: Format,
@@ -207,6 +222,16 @@ pub(super) fn number(text: &str, range: fn(f64) -> Result<f64, String>) -> Resul
 /// What a time limit is.
 pub(super) fn seconds(text: &str) -> Result<f64, String> {
     number(text, time_limit)
+}
+
+/// A time as people write it; a bare number is seconds.
+fn duration(text: &str) -> Result<Duration, String> {
+    let wrong = || format!("`{text}` is not a time; type for example 30s or 5m");
+    let seconds = match text.parse::<f64>() {
+        Ok(seconds) => seconds,
+        Err(_) => text.parse::<jiff::SignedDuration>().map_err(|_| wrong())?.as_secs_f64(),
+    };
+    time_limit(seconds).map(Duration::from_secs_f64).map_err(|_| wrong())
 }
 
 fn memory(text: &str) -> Result<f64, String> {

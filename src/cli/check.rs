@@ -81,7 +81,7 @@ fn pair(text: &str) -> Result<(String, String), String> {
 impl CheckArgs {
     /// The plan of this one subject.
     pub fn request(&self, registry: &Registry) -> Result<Request, CliError> {
-        Ok(Request::new(vec![self.plan(registry)?], &self.measuring, registry))
+        Ok(Request { full: true, ..Request::new(vec![self.plan(registry)?], &self.measuring, registry)? })
     }
 
     fn plan(&self, registry: &Registry) -> Result<Plan<'static>, CliError> {

@@ -1,7 +1,8 @@
 //! Exit codes: an API for scripts.
 
 use crate::checks::Verdict;
-use crate::engine::Results;
+use crate::comparison::Comparison;
+use crate::report::Report;
 use std::process::ExitCode;
 
 /// How the program ends.
@@ -41,18 +42,31 @@ impl Exit {
         PRECEDENCE.into_iter().find(|e| *e == self || *e == other).unwrap_or(Self::Internal)
     }
 
-    /// What results mean. `strict` turns inconclusive, warned and unfinished runs
-    /// into failures.
-    pub fn of(results: &Results, strict: bool) -> Self {
-        let verdicts = || results.cases.iter().flat_map(|c| &c.findings).map(|f| f.outcome.verdict);
-        let any = |wanted| verdicts().any(|v| v == wanted);
-        let unclear = any(Verdict::Inconclusive) || any(Verdict::Warn) || results.partial.is_some();
-        if any(Verdict::Error) {
+    /// What a report means. `strict` turns inconclusive, warned and unfinished runs
+    /// into failures. With a baseline only what got worse counts.
+    pub fn of(report: &Report, strict: bool) -> Self {
+        let any = |wanted| report.results.iter().any(|r| r.verdict == wanted);
+        let unclear = any(Verdict::Inconclusive) || any(Verdict::Warn) || report.partial.is_some();
+        if report.results.iter().all(|r| matches!(r.verdict, Verdict::Skipped)) {
+            Self::Nothing
+        } else if let Some(comparison) = &report.comparison {
+            let unfinished = if strict && report.partial.is_some() { Self::Failed } else { Self::Passed };
+            unfinished.and(Self::of_comparison(comparison, strict))
+        } else if any(Verdict::Error) {
             Self::Subject
         } else if any(Verdict::Fail) || strict && unclear {
             Self::Failed
-        } else if verdicts().all(|v| v == Verdict::Skipped) {
-            Self::Nothing
+        } else {
+            Self::Passed
+        }
+    }
+
+    /// What a comparison means. `strict` lets what is less sure count as worse.
+    pub fn of_comparison(comparison: &Comparison, strict: bool) -> Self {
+        if comparison.has_new_errors() {
+            Self::Subject
+        } else if !comparison.worse.is_empty() || strict && !comparison.less_sure.is_empty() {
+            Self::Failed
         } else {
             Self::Passed
         }
@@ -68,28 +82,12 @@ impl From<Exit> for ExitCode {
 #[cfg(test)]
 mod tests {
     use super::*;
-    use crate::checks::Outcome;
-    use crate::engine::{CaseResult, Finding};
-    use crate::registry::Registry;
-    use crate::suite::{Overrides, load};
+    use crate::comparison::compare;
+    use crate::report::synthetic::{report, result};
 
-    fn results(verdicts: &[Verdict]) -> Results<'static> {
-        let text = "[suite]\ntheta = 30\nphi = 17\n[[subject]]\nuse = 'lambert'";
-        let plan = load("t", text, &Registry::builtin(), &Overrides::default()).ok().unwrap().plan;
-        let finding = |v: &Verdict| Finding {
-            check: "mis",
-            outcome: Outcome::new(*v, ""),
-            attempts: Vec::new(),
-            waived_because: None,
-        };
-        let case = CaseResult {
-            index: 0,
-            case: plan.cases[0].clone(),
-            findings: verdicts.iter().map(finding).collect(),
-            evidence: None,
-            seconds: 0.0,
-        };
-        Results { cases: vec![case], share: 1e-9, tests: 1, partial: None, seconds: 0.0 }
+    fn reported(verdicts: &[Verdict]) -> Report {
+        let row = |v: &Verdict| result("lambert", "mis", 30.0, *v);
+        Report { results: verdicts.iter().map(row).collect(), ..report() }
     }
 
     #[test]
@@ -105,13 +103,31 @@ mod tests {
             (&[Skipped], Exit::Nothing, Exit::Nothing),
             (&[], Exit::Nothing, Exit::Nothing),
         ] {
-            assert_eq!(Exit::of(&results(verdicts), false), code, "{verdicts:?}");
-            assert_eq!(Exit::of(&results(verdicts), true), strict, "{verdicts:?} strict");
+            assert_eq!(Exit::of(&reported(verdicts), false), code, "{verdicts:?}");
+            assert_eq!(Exit::of(&reported(verdicts), true), strict, "{verdicts:?} strict");
         }
-        let none = Results { cases: Vec::new(), ..results(&[]) };
-        assert_eq!(Exit::of(&none, true), Exit::Nothing);
-        let partial = Results { partial: Some("time".into()), ..results(&[Pass]) };
+        let partial = Report { partial: Some("time".into()), ..reported(&[Pass]) };
         assert_eq!(Exit::of(&partial, true), Exit::Failed);
+    }
+
+    #[test]
+    fn with_a_baseline_only_what_got_worse_counts() {
+        use Verdict::*;
+        for (before, after, code, strict) in [
+            (Fail, Fail, Exit::Passed, Exit::Passed),
+            (Error, Error, Exit::Passed, Exit::Passed),
+            (Pass, Fail, Exit::Failed, Exit::Failed),
+            (Fail, Error, Exit::Subject, Exit::Subject),
+            (Fail, Pass, Exit::Passed, Exit::Passed),
+            (Pass, Inconclusive, Exit::Passed, Exit::Failed),
+            (Inconclusive, Inconclusive, Exit::Passed, Exit::Passed),
+            (Pass, Skipped, Exit::Nothing, Exit::Nothing),
+        ] {
+            let (old, new) = (reported(&[before]), reported(&[after]));
+            let new = Report { comparison: Some(compare(&old, &new)), ..new };
+            assert_eq!(Exit::of(&new, false), code, "{before:?} {after:?}");
+            assert_eq!(Exit::of(&new, true), strict, "{before:?} {after:?} strict");
+        }
     }
 
     #[test]

@@ -4,7 +4,7 @@ use super::args::{Args, Command};
 use super::error::CliError;
 use super::exit::Exit;
 use super::output::tell;
-use super::{calibrate, completions, explain, figures, list, new, report, run, schema, worker};
+use super::{calibrate, completions, diff, explain, figures, list, new, report, run, schema, worker};
 use crate::plugins::set_gonio;
 use crate::registry::Registry;
 use clap::Parser;
@@ -50,6 +50,7 @@ fn obey(args: Args, registry: &Registry) -> Result<Exit, CliError> {
         Command::List(args) => list::list(&args, registry),
         Command::Explain(args) => explain::explain(&args),
         Command::Report(args) => report::report(&args, voice),
+        Command::Diff(args) => diff::diff(&args, voice),
         Command::Figures(args) => figures::figures(&args, voice),
         Command::New(args) => new::new(&args, voice),
         Command::Calibrate(args) => calibrate::calibrate(&args, voice),

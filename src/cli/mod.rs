@@ -4,6 +4,8 @@ mod args;
 mod calibrate;
 mod check;
 mod completions;
+mod diff;
+mod earlier;
 mod error;
 mod exit;
 mod explain;

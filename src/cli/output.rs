@@ -26,6 +26,10 @@ pub fn prove_writable(folder: &Path) -> Result<(), CliError> {
     made.map(drop).map_err(|why| CliError::Output { path: folder.into(), why })
 }
 
+fn from_environment(name: &str, usual: usize) -> usize {
+    std::env::var(name).ok().and_then(|n| n.parse().ok()).unwrap_or(usual)
+}
+
 impl Voice {
     /// Whether messages are coloured.
     pub fn colored(&self) -> bool {
@@ -39,10 +43,15 @@ impl Voice {
         }
     }
 
-    /// How pages are laid out.
+    /// How pages are laid out, all told.
     pub fn look(&self) -> Look {
-        let width = std::env::var("COLUMNS").ok().and_then(|c| c.parse().ok()).unwrap_or(100);
-        Look { width, colour: self.colored() }
+        Look { width: from_environment("COLUMNS", 100), colour: self.colored(), lines: None }
+    }
+
+    /// How a page is laid out that is to fit a screen, unless all is asked for.
+    pub fn screen(&self) -> Look {
+        let lines = (!self.verbose).then(|| from_environment("LINES", 50));
+        Look { lines, ..self.look() }
     }
 
     /// How errors are drawn.

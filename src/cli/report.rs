@@ -1,12 +1,13 @@
 //! `gonio report`.
 
 use super::args::{Plots, Voice};
+use super::earlier::read;
 use super::error::CliError;
 use super::exit::Exit;
 use super::output::tell;
-use crate::report::{REPORT, Report, SCHEMA_VERSION, diagnoses, redraw};
-use serde::Deserialize;
-use std::path::{Path, PathBuf};
+use crate::comparison::compare;
+use crate::report::{diagnoses, html, redraw};
+use std::path::PathBuf;
 
 /// Arguments of `gonio report`.
 #[derive(Debug, clap::Args)]
@@ -17,40 +18,30 @@ pub struct ReportArgs {
     /// Which cases get a picture.
     #[arg(long, value_enum, default_value_t = Plots::All, value_name = "WHICH")]
     pub plots: Plots,
+    /// An earlier report: the page tells what changed since.
+    #[arg(long, value_name = "DIR")]
+    pub baseline: Option<PathBuf>,
 }
 
-/// Draws the pictures of a saved report again, and tells its diagnoses: they were
-/// made with the subject at hand, which evidence is not.
+/// Draws the pictures of a saved report again, makes its page, and tells its diagnoses:
+/// they were made with the subject at hand, which evidence is not.
 pub fn report(args: &ReportArgs, voice: Voice) -> Result<Exit, CliError> {
-    let (folder, report) = read(&args.folder)?;
+    let (folder, mut report) = read(&args.folder)?;
+    if let Some(before) = &args.baseline {
+        let (_, before) = read(before)?;
+        report.comparison = Some(compare(&before, &report));
+    }
     let drawn = match args.plots.which() {
         Some(which) => redraw(&folder, &report, which)?,
         None => 0,
     };
+    let page = html::write(&folder, &report)?;
     if !voice.quiet {
         tell(&format!("pictures of {drawn} cases drawn in {}", folder.display()));
+        tell(&format!("page: {}", page.display()));
         if !report.diagnoses.is_empty() {
             tell(diagnoses(&report, voice.look()).trim_end());
         }
     }
     Ok(Exit::Passed)
-}
-
-fn read(path: &Path) -> Result<(PathBuf, Report), CliError> {
-    let file = if path.is_dir() { path.join(REPORT) } else { path.to_path_buf() };
-    let folder = file.parent().unwrap_or(Path::new(".")).to_path_buf();
-    let wrong = |message: String| CliError::Usage {
-        message: format!("{}: {message}", file.display()),
-        help: "name the folder that `gonio run --out DIR` wrote".into(),
-    };
-    let text = std::fs::read_to_string(&file).map_err(|e| wrong(e.to_string()))?;
-    let json: serde_json::Value =
-        serde_json::from_str(&text).map_err(|e| wrong(format!("not a report: {e}")))?;
-    // Told before the fields, since a later version may have others.
-    let version = json.get("schema_version").and_then(serde_json::Value::as_u64);
-    if version.is_some_and(|v| v > u64::from(SCHEMA_VERSION)) {
-        return Err(wrong("was written by a later version of gonio".into()));
-    }
-    let report = Report::deserialize(json).map_err(|e| wrong(format!("not a report: {e}")))?;
-    Ok((folder, report))
 }

@@ -1,18 +1,20 @@
 //! `gonio run`, and the one place where a plan meets the engine and the report.
 
 use super::args::{Format, Measuring, Plots, Voice};
+use super::earlier::{read, read_if_any};
 use super::error::CliError;
 use super::exit::Exit;
 use super::interrupt::stop_on_interrupt;
 use super::output::{emit, prove_writable, tell};
 use super::progress::Progress;
+use crate::comparison::compare;
 use crate::diagnosis::{Explanation, diagnose_all};
-use crate::engine::{self, Event, Options};
+use crate::engine::{self, Draws, Event, Options};
 use crate::evidence::Meter;
 use crate::registry::{Registry, nearest};
 use crate::report::{
-    Diagnosis, FileError, Files, REPORT, Report, draw_diagnoses, draw_results, evidence_of, html,
-    summary, write_evidence, write_report,
+    Carried, Diagnosis, FileError, Files, Look, REPORT, Report, draw_diagnoses, draw_results, evidence_of,
+    html, summary, write_evidence, write_report,
 };
 use crate::suite::{EMBEDDED, Expanded, Plan, embedded, load, reproduce};
 use std::collections::{BTreeMap, BTreeSet};
@@ -47,6 +49,16 @@ pub struct Request {
     pub plots: Plots,
     /// Whether unclear results fail.
     pub strict: bool,
+    /// The report that the results are compared with.
+    pub baseline: Option<PathBuf>,
+    /// The report whose results stand for subjects that are the same.
+    pub changed_since: Option<PathBuf>,
+    /// How many draws cases get.
+    pub draws: Draws,
+    /// The budget of time in seconds.
+    pub time_s: Option<f64>,
+    /// Whether every finding is told in full, however many there are.
+    pub full: bool,
     /// Combinations of parameters that were left out since their model refuses them.
     pub refused: usize,
     /// Explanations of failures besides those that come with gonio.
@@ -55,8 +67,17 @@ pub struct Request {
 
 impl Request {
     /// These plans, with what was typed.
-    pub fn new(plans: Vec<Plan<'static>>, measuring: &Measuring, registry: &Registry) -> Self {
-        Self {
+    pub fn new(
+        plans: Vec<Plan<'static>>,
+        measuring: &Measuring,
+        registry: &Registry,
+    ) -> Result<Self, CliError> {
+        let draws = match (&measuring.time, &measuring.allocation) {
+            (Some(time), _) => Draws::Within(time.mul_f64(MEASURING)),
+            (None, Some(path)) => Draws::Given(allocation(path, &plans)?),
+            (None, None) => Draws::Planned,
+        };
+        Ok(Self {
             plans,
             out: measuring.out.clone(),
             keep: false,
@@ -64,9 +85,14 @@ impl Request {
             format: measuring.format,
             plots: measuring.plots,
             strict: measuring.strict,
+            baseline: measuring.baseline.clone(),
+            changed_since: measuring.changed_since.clone(),
+            draws,
+            time_s: measuring.time.map(|time| time.as_secs_f64()),
+            full: false,
             refused: 0,
             explanations: Arc::new(registry.explanations()),
-        }
+        })
     }
 
     /// The folder of a plan's report: its own where there are several.
@@ -75,6 +101,28 @@ impl Request {
             return self.keep.then(|| Path::new("reports").join(file_name(&plan.suite)));
         };
         Some(if self.plans.len() == 1 { out.clone() } else { out.join(file_name(&plan.suite)) })
+    }
+}
+
+/// The part of a budget of time that is for measuring; pictures and files take the rest.
+const MEASURING: f64 = 0.9;
+
+/// The draws of each case in an earlier run.
+fn allocation(path: &Path, plans: &[Plan]) -> Result<Vec<u64>, CliError> {
+    let (_, report) = read(path)?;
+    let wrong = |message: &str, help: &str| CliError::Usage {
+        message: format!("--allocation {}: {message}", path.display()),
+        help: help.into(),
+    };
+    let cases: usize = plans.iter().map(|p| p.cases.len()).sum();
+    match report.allocation {
+        None => Err(wrong("that run had no budget of time", "name the report of a run with --time")),
+        Some(_) if plans.len() > 1 => Err(wrong("it is of one suite", "run the suites one by one")),
+        Some(allocation) if allocation.samples.len() != cases => Err(wrong(
+            &format!("it has {} cases, and this plan {cases}", allocation.samples.len()),
+            "run the same suite with the same options",
+        )),
+        Some(allocation) => Ok(allocation.samples),
     }
 }
 
@@ -89,7 +137,7 @@ impl RunArgs {
         let overrides = self.measuring.overrides();
         let (mut plans, mut refused): (Vec<Plan<'static>>, _) = (Vec::new(), 0);
         for suite in &self.suites {
-            let (name, text) = read(suite)?;
+            let (name, text) = read_suite(suite)?;
             let Expanded { plan, refused: left_out } = load(&name, &text, registry, &overrides)?;
             refused += left_out;
             if plans.iter().any(|p| file_name(&p.suite) == file_name(&plan.suite)) {
@@ -100,12 +148,12 @@ impl RunArgs {
             }
             plans.push(plan);
         }
-        Ok(Request { refused, keep: true, ..Request::new(plans, &self.measuring, registry) })
+        Ok(Request { refused, keep: true, ..Request::new(plans, &self.measuring, registry)? })
     }
 }
 
 /// The text of a suite: a file, or one that comes with gonio.
-fn read(suite: &str) -> Result<(String, String), CliError> {
+fn read_suite(suite: &str) -> Result<(String, String), CliError> {
     match (std::fs::read_to_string(suite), embedded(suite)) {
         (Ok(text), _) => Ok((suite.into(), text)),
         (Err(_), Some(found)) => Ok((found.name.into(), found.text.into())),
@@ -180,9 +228,14 @@ fn run(
         contradictions(plan).iter().for_each(|told| tell(told));
     }
     let folder = request.folder(plan);
+    let baseline = read_baseline(request, voice)?;
+    let timed = !matches!(request.draws, Draws::Planned);
+    let carried = read_carried(request, plan, !timed, voice)?;
+    let left = (!carried.rows.is_empty()).then(|| carried.left(plan));
     let progress = Progress::new(plan, voice);
     let started = jiff::Timestamp::now().to_string();
-    let options = Options { threads: request.threads, stop: stop.clone(), deadline: None };
+    let (cases, draws) = (left, request.draws.clone());
+    let options = Options { threads: request.threads, stop: stop.clone(), deadline: None, cases, draws };
     let mut unwritten: Option<FileError> = None;
     let results = engine::run(plan, &options, &mut |event| {
         progress.observe(event);
@@ -207,6 +260,7 @@ fn run(
         command: &|case, check| reproduce(&program, plan, &case.case, results.share, check),
         evidence: &|case| folder.as_ref().and_then(|_| evidence_of(case)),
         plot: &|case| plots.get(&case.index).cloned(),
+        time_s: request.time_s,
     };
     let diagnosed = diagnose_all(&results, &request.explanations, &options);
     let mut diagnoses = Diagnosis::all(&results, diagnosed);
@@ -214,15 +268,19 @@ fn run(
         (Some(folder), Some(_)) => draw_diagnoses(folder, &mut diagnoses),
         _ => Ok(()),
     };
+    let drawn = drawn.and_then(|()| folder.as_ref().map_or(Ok(()), |folder| carried.write_evidence(folder)));
     let unwritten = unwritten.or(drawn.err());
-    let report = Report::new(plan, &results, started, &files).diagnosed(diagnoses);
+    let report = Report::new(plan, &results, started, &files, carried).diagnosed(diagnoses);
+    let comparison = baseline.as_ref().map(|before| compare(before, &report));
+    let report = report.compared(comparison);
     let written = folder.as_ref().map(|folder| {
         write_report(folder, &report)?;
-        html::write(folder, &report, None)
+        html::write(folder, &report)
     });
     let written = written.transpose();
     if !voice.quiet {
-        tell(&page(&report, folder.as_deref(), voice));
+        let look = if request.full { voice.look() } else { voice.screen() };
+        tell(&page(&report, folder.as_deref(), look));
     }
     if request.format == Format::Json {
         let mut text = serde_json::to_string(&report).map_err(|e| CliError::Internal(e.to_string()))?;
@@ -233,18 +291,37 @@ fn run(
         return Err(error.into());
     }
     written?;
-    if stop.load(Ordering::Relaxed) { Ok(Exit::Interrupted) } else { Ok(Exit::of(&results, request.strict)) }
+    if stop.load(Ordering::Relaxed) { Ok(Exit::Interrupted) } else { Ok(Exit::of(&report, request.strict)) }
+}
+
+/// The report to compare with, if there is one by now.
+fn read_baseline(request: &Request, voice: Voice) -> Result<Option<Report>, CliError> {
+    let Some(path) = &request.baseline else { return Ok(None) };
+    let found = read_if_any("--baseline", path, "this run is judged by itself", voice.quiet)?;
+    Ok(found.map(|(_, report)| report))
+}
+
+/// What need not be measured again.
+fn read_carried(request: &Request, plan: &Plan, samples: bool, voice: Voice) -> Result<Carried, CliError> {
+    let Some(path) = &request.changed_since else { return Ok(Carried::default()) };
+    let found = read_if_any("--changed-since", path, "everything is measured", voice.quiet)?;
+    Ok(found.map_or_else(Carried::default, |(folder, report)| Carried::of(&report, &folder, plan, samples)))
 }
 
 /// The page for people.
-fn page(report: &Report, folder: Option<&Path>, voice: Voice) -> String {
+fn page(report: &Report, folder: Option<&Path>, look: Look) -> String {
     let path = |name: &str| folder.map(|f| f.join(name).display().to_string()).unwrap_or_default();
-    let paths = [("page", path(html::PAGE)), ("report", path(REPORT)), ("evidence", path("evidence")), ("pictures", path("plots"))];
+    let paths = [
+        ("page", path(html::PAGE)),
+        ("report", path(REPORT)),
+        ("evidence", path("evidence")),
+        ("pictures", path("plots")),
+    ];
     let files: Vec<(&str, &str)> = match folder {
         Some(_) => paths.iter().map(|(what, path)| (*what, path.as_str())).collect(),
         None => Vec::new(),
     };
-    summary(report, &files, voice.look())
+    summary(report, &files, look)
 }
 
 /// The name under which this program was called, for commands to type.

@@ -81,6 +81,9 @@ pub struct Results<'a> {
     pub share: f64,
     /// Number of statistical tests that shares were dealt to.
     pub tests: usize,
+    /// Draws at most by case of the plan, where a budget of time decided them; 0 where a
+    /// case was not begun.
+    pub allocation: Option<Vec<u64>>,
     /// Why not every case was run to its end, if so.
     pub partial: Option<String>,
     /// Wall time in seconds.

@@ -1,5 +1,6 @@
 //! Runs all cases of a plan on a pool of threads.
 
+use super::allotment::{Allotment, Draws};
 use super::case::{not_run, run_case, statistical_tests};
 use super::results::{CaseResult, Event, Results};
 use crate::bsdf::SubjectError;
@@ -23,6 +24,10 @@ pub struct Options {
     pub stop: Arc<AtomicBool>,
     /// Stop by itself after this time.
     pub deadline: Option<Duration>,
+    /// Numbers of the cases to run; all where `None`.
+    pub cases: Option<Vec<usize>>,
+    /// How many draws cases get.
+    pub draws: Draws,
 }
 
 /// How often the run looks for calls that do not return.
@@ -45,6 +50,7 @@ struct Shared {
     stop: Arc<AtomicBool>,
     seed: u64,
     share: f64,
+    allotment: Allotment,
 }
 
 /// Runs a plan. Results come in the plan's order and are the same bits for any
@@ -52,17 +58,20 @@ struct Shared {
 pub fn run(plan: &Plan<'static>, options: &Options, observe: &mut dyn FnMut(&Event)) -> Results<'static> {
     let start = Instant::now();
     let (tests, share) = shares(plan);
+    let chosen = options.cases.clone().unwrap_or_else(|| (0..plan.cases.len()).collect());
+    let pool = pool(options.threads.unwrap_or(0));
+    let threads = pool.current_num_threads();
+    observe(&Event::Started { cases: chosen.len(), threads });
+    let allotment = Allotment::new(&options.draws, plan, &chosen, threads);
     let shared = Arc::new(Shared {
         cases: plan.cases.clone(),
-        queue: Mutex::new((0..plan.cases.len()).collect()),
+        queue: Mutex::new(allotment.order(plan, &chosen).into()),
         stop: options.stop.clone(),
         seed: plan.seed,
         share,
+        allotment,
     });
     let (sender, receiver) = mpsc::channel();
-    let pool = pool(options.threads.unwrap_or(0));
-    let threads = pool.current_num_threads();
-    observe(&Event::Started { cases: plan.cases.len(), threads });
     for _ in 0..threads {
         spawn_worker(&pool, &shared, &sender);
     }
@@ -70,7 +79,7 @@ pub fn run(plan: &Plan<'static>, options: &Options, observe: &mut dyn FnMut(&Eve
     let mut pools = vec![pool];
     let mut running: HashMap<usize, Arc<Watch>> = HashMap::new();
     let mut done: Vec<Option<CaseResult<'static>>> = plan.cases.iter().map(|_| None).collect();
-    let mut open = plan.cases.len();
+    let mut open = chosen.len();
     while open > 0 {
         if options.deadline.is_some_and(|d| start.elapsed() > d) {
             shared.stop.store(true, Ordering::Relaxed);
@@ -108,13 +117,19 @@ pub fn run(plan: &Plan<'static>, options: &Options, observe: &mut dyn FnMut(&Eve
         }
     }
     let unfinished = done.iter().flatten().filter(|r| r.evidence.is_none() && is_skipped(r)).count();
-    let partial = shared.stop.load(Ordering::Relaxed).then(|| {
-        let why =
-            if options.deadline.is_some_and(|d| start.elapsed() > d) { "time was up" } else { "interrupted" };
-        format!("{why}: {unfinished} of {} cases were not begun", plan.cases.len())
-    });
+    let stopped = shared.stop.load(Ordering::Relaxed);
+    let late = options.deadline.is_some_and(|d| start.elapsed() > d);
+    let why = match &options.draws {
+        _ if stopped && !late => "interrupted",
+        Draws::Given(_) => "as in the run whose allocation this one follows",
+        _ => "time was up",
+    };
+    let refused = !matches!(options.draws, Draws::Planned) && unfinished > 0;
+    let partial =
+        (stopped || refused).then(|| format!("{why}: {unfinished} of {} cases were not begun", chosen.len()));
     let cases = done.into_iter().flatten().collect();
-    Results { cases, share, tests, partial, seconds: start.elapsed().as_secs_f64() }
+    let allocation = shared.allotment.dealt();
+    Results { cases, share, tests, allocation, partial, seconds: start.elapsed().as_secs_f64() }
 }
 
 /// Runs the cases one after the other on this thread, as unit tests want it.
@@ -135,7 +150,7 @@ pub fn run_here<'a>(plan: &Plan<'a>, options: &Options) -> Results<'a> {
     }
     let partial =
         (left > 0).then(|| format!("time was up: {left} of {} cases were not begun", plan.cases.len()));
-    Results { cases, share, tests, partial, seconds: start.elapsed().as_secs_f64() }
+    Results { cases, share, tests, allocation: None, partial, seconds: start.elapsed().as_secs_f64() }
 }
 
 /// Number of statistical tests of a plan, and what each may spend.
@@ -164,11 +179,21 @@ fn spawn_worker(pool: &rayon::ThreadPool, shared: &Arc<Shared>, sender: &Sender<
             let case = &shared.cases[index];
             // Time spent on waiting for others is not the case's.
             let _alone = case.subject.alone().map(|one| one.lock().unwrap_or_else(PoisonError::into_inner));
+            let case = match shared.allotment.grant(index, case) {
+                Ok(case) => case,
+                Err(why) => {
+                    let skipped = not_run(index, case, &Outcome::skipped(why));
+                    if sender.send(Message::Done(Box::new(skipped))).is_err() {
+                        return;
+                    }
+                    continue;
+                }
+            };
             let watch = Arc::new(Watch::new(case.settings.time_limit, shared.stop.clone()));
             if sender.send(Message::Started(index, watch.clone())).is_err() {
                 return;
             }
-            let run = || run_case(index, case, shared.seed, shared.share, &watch);
+            let run = || run_case(index, &case, shared.seed, shared.share, &watch);
             let result = catch_unwind(AssertUnwindSafe(run)).unwrap_or_else(|payload| {
                 let text = payload
                     .downcast_ref::<String>()
@@ -176,8 +201,9 @@ fn spawn_worker(pool: &rayon::ThreadPool, shared: &Arc<Shared>, sender: &Sender<
                     .or_else(|| payload.downcast_ref::<&str>().copied())
                     .unwrap_or("a panic without text");
                 let outcome = Outcome::error(format!("gonio itself failed on this case: {text}"));
-                not_run(index, case, &outcome)
+                not_run(index, &case, &outcome)
             });
+            shared.allotment.settle(index, result.seconds);
             if sender.send(Message::Done(Box::new(result))).is_err() {
                 return;
             }

@@ -1,10 +1,12 @@
 //! Results of a run to a report.
 
+use super::carry::{Carried, label};
 use super::json::{
-    AttemptRow, CheckResult, Diagnosis, Machine, Report, SCHEMA_VERSION, SubjectEntry, SubjectId, Summary,
-    WaiverRow, WaiverState, WoAngles,
+    Allocation, AttemptRow, CheckResult, Diagnosis, Machine, Report, SCHEMA_VERSION, SubjectEntry, SubjectId,
+    Summary, WaiverRow, WaiverState, WoAngles,
 };
 use crate::checks::Verdict;
+use crate::comparison::Comparison;
 use crate::engine::{CaseResult, Finding, Results};
 use crate::evidence::{Figure, Meter};
 use crate::suite::{Case, Plan, digests};
@@ -19,6 +21,8 @@ pub struct Files<'a> {
     pub evidence: &'a dyn Fn(&CaseResult) -> Option<String>,
     /// The file of a case's picture.
     pub plot: &'a dyn Fn(&CaseResult) -> Option<String>,
+    /// The budget of time in seconds, if the run had one.
+    pub time_s: Option<f64>,
 }
 
 impl Summary {
@@ -49,9 +53,14 @@ impl Machine {
 
 impl Report {
     /// The report of a run that began at `started` (RFC 3339, UTC).
-    pub fn new(plan: &Plan, results: &Results, started: String, files: &Files) -> Self {
-        let rows: Vec<CheckResult> =
-            results.cases.iter().flat_map(|case| case.findings.iter().map(|f| row(case, f, files))).collect();
+    pub fn new(plan: &Plan, results: &Results, started: String, files: &Files, mut carried: Carried) -> Self {
+        let mut of_case = std::mem::take(&mut carried.rows);
+        for case in &results.cases {
+            of_case.insert(case.index, case.findings.iter().map(|f| row(case, f, files)).collect());
+        }
+        let rows: Vec<CheckResult> = of_case.into_values().flatten().collect();
+        let allocation =
+            results.allocation.clone().map(|samples| Allocation { time_s: files.time_s, samples });
         Self {
             schema_version: SCHEMA_VERSION,
             gonio: env!("CARGO_PKG_VERSION").into(),
@@ -63,17 +72,24 @@ impl Report {
             machine: Machine::this(),
             partial: results.partial.clone(),
             summary: Summary::count(&rows),
-            subjects: subjects(plan, true),
+            subjects: subjects(plan, allocation.is_none(), &carried),
             waivers: waivers(results),
-            allocation: None,
+            allocation,
+            comparison: None,
             results: rows,
-            diagnoses: Vec::new(),
+            diagnoses: carried.diagnoses,
         }
     }
 
     /// The same with what is wrong with failing subjects.
-    pub fn diagnosed(self, diagnoses: Vec<Diagnosis>) -> Self {
-        Self { diagnoses, ..self }
+    pub fn diagnosed(mut self, diagnoses: Vec<Diagnosis>) -> Self {
+        self.diagnoses.extend(diagnoses);
+        self
+    }
+
+    /// The same with what changed since a baseline.
+    pub fn compared(self, comparison: Option<Comparison>) -> Self {
+        Self { comparison, ..self }
     }
 
     /// The same without what differs from run to run: times, and the machine.
@@ -85,18 +101,14 @@ impl Report {
     }
 }
 
-/// What a row is called that is not named as its subject.
-fn label(case: &Case) -> Option<String> {
-    (case.spelling.split(':').next() != Some(&case.group)).then(|| case.group.clone())
-}
-
 /// The subjects of a plan, in its order.
-fn subjects(plan: &Plan, samples: bool) -> Vec<SubjectEntry> {
+fn subjects(plan: &Plan, samples: bool, carried: &Carried) -> Vec<SubjectEntry> {
     let mut digests = digests(plan, samples);
     let entry = |case: &Arc<Case>| {
         let digest = digests.remove(&(case.group.clone(), case.spelling.clone()))?;
         let (name, source) = (case.spelling.clone(), case.source.clone());
-        Some(SubjectEntry { name, label: label(case), digest, source, carried: false })
+        let carried = carried.holds(&case.group, &case.spelling);
+        Some(SubjectEntry { name, label: label(case), digest, source, carried })
     };
     plan.cases.iter().filter_map(entry).collect()
 }

@@ -2,6 +2,7 @@
 
 use crate::bsdf::{Claims, Transport};
 use crate::checks::{Effect, Verdict};
+use crate::comparison::Comparison;
 use crate::diagnosis::Profile;
 use crate::evidence::{Evaluations, Figure, Place};
 use crate::registry::Parameters;
@@ -46,6 +47,9 @@ pub struct Report {
     /// How a budget of time was spent, if the run had one.
     #[serde(default, skip_serializing_if = "Option::is_none")]
     pub allocation: Option<Allocation>,
+    /// What changed since the baseline, if the run had one.
+    #[serde(default, skip_serializing_if = "Option::is_none")]
+    pub comparison: Option<Comparison>,
     /// One entry a case and check.
     pub results: Vec<CheckResult>,
     /// What is wrong with failing subjects.

@@ -1,6 +1,7 @@
 //! Events and results to terminal, JSON and SVG.
 
 mod build;
+mod carry;
 mod diagnoses;
 mod folder;
 pub mod html;
@@ -8,10 +9,13 @@ mod json;
 mod plots;
 mod saved;
 mod schema;
+#[cfg(test)]
+pub(crate) mod synthetic;
 mod terminal;
 mod wording;
 
 pub use build::Files;
+pub use carry::Carried;
 pub use folder::{REPORT, draw_diagnoses, draw_results, evidence_of, redraw, write_report};
 pub use json::{
     Allocation, AttemptRow, CheckResult, Diagnosis, Machine, Report, SCHEMA_VERSION, SubjectEntry, SubjectId,
@@ -23,4 +27,4 @@ pub use plots::{
 };
 pub use saved::{FileError, evidence_path, read_evidence, write_evidence, write_whole};
 pub use schema::{schema, schema_text};
-pub use terminal::{Look, diagnoses, summary, symbol};
+pub use terminal::{Look, comparison, diagnoses, summary, symbol};

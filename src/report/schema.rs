@@ -28,7 +28,7 @@ mod tests {
 
     #[test]
     fn holds_a_report_and_refuses_another_thing() {
-        let report = super::super::terminal::tests::report();
+        let report = super::super::synthetic::report();
         let value = serde_json::to_value(&report).unwrap();
         let validator = jsonschema::validator_for(&schema()).unwrap();
         let errors: Vec<String> = validator.iter_errors(&value).map(|e| e.to_string()).collect();

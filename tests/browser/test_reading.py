@@ -128,6 +128,22 @@ def test_a_permalink_opens_a_packed_section_at_a_check(browser):
     assert browser.find_element(By.CSS_SELECTOR, ".target").get_attribute("id") == "s-lambert--sanity"
 
 
+def test_what_changed_is_told_and_marked(browser):
+    browser.get(file_url("compared"))
+    worse, better = browser.find_elements(By.CSS_SELECTOR, "table.changes")
+    assert "What got worse" in worse.text and "normalization verdict pass fail" in worse.text
+    assert "What got better" in better.text and "energy verdict fail pass" in better.text
+    section = browser.find_element(By.CSS_SELECTOR, "section[aria-labelledby=compared]").text
+    assert "New: rough-dielectric" in section
+    browser.find_element(By.CSS_SELECTOR, "input[name=changed]").click()
+    assert rows(browser) == ["s-lambert", f"s-{FAILING}"]
+    browser.picture("compared")
+    better.find_element(By.TAG_NAME, "a").click()
+    browser.settle()
+    assert browser.find_element(By.CSS_SELECTOR, ".target").get_attribute("id") == "s-lambert--energy"
+    assert "fail → pass" in text(browser, "#s-lambert .changed")
+
+
 def test_a_command_is_copied(browser):
     with served("failing") as address:
         browser.get(address)

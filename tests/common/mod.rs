@@ -1,6 +1,7 @@
 //! A GGX reflector written for the tests, with one bug at a time.
 #![allow(dead_code)]
 
+pub mod desk;
 pub mod glass;
 pub mod languages;
 pub mod measuring;

@@ -149,7 +149,7 @@ mod tests {
     /// As the script reads them: sums of counts and of sixteenths, and the leaves.
     fn read(bytes: &[u8]) -> (u64, u64, usize) {
         let mut at = 3 + 6 * 8;
-        let mut number = |at: &mut usize| {
+        let number = |at: &mut usize| {
             let (mut value, mut shift) = (0u64, 0);
             loop {
                 let byte = bytes[*at];

@@ -1,5 +1,12 @@
 //! What changed since another report, in words for a page.
 
+use super::super::json::SubjectId;
+use super::super::wording::{direction, ratio};
+use super::head::counted;
+use crate::bsdf::Transport;
+use crate::checks::Verdict;
+use crate::comparison::{Change, Comparison, Origin, Place, What};
+
 /// Whether a change is for the better.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub enum Trend {
@@ -41,17 +48,12 @@ impl Trend {
 }
 
 /// A change of a check of a subject.
-#[derive(Clone, Debug)]
-pub struct Changed {
-    /// How the subject is written.
-    pub subject: String,
-    /// What the suite calls its row, if it has a name of its own.
-    pub label: Option<String>,
-    /// Which check.
-    pub check: String,
+pub struct Changed<'a> {
+    /// Which.
+    pub of: &'a Change,
     /// Whether it is for the better.
     pub trend: Trend,
-    /// What it is that changed: the verdict, efficiency, the detection limit.
+    /// What it is that changed.
     pub what: &'static str,
     /// Earlier.
     pub before: String,
@@ -59,50 +61,70 @@ pub struct Changed {
     pub after: String,
     /// At which directions.
     pub places: String,
-    /// The named bug.
-    pub cause: Option<String>,
-    /// One sentence of the report that is worse.
-    pub message: String,
 }
 
 /// What a later report says that an earlier one did not.
-#[derive(Clone, Debug, Default)]
-pub struct Changes {
-    /// The earlier report in words: its suite, when it was made, its seed.
+pub struct Changes<'a> {
+    /// The earlier report in words.
     pub before: String,
+    /// The rest of it.
+    pub of: &'a Comparison,
     /// The worse first.
-    pub list: Vec<Changed>,
-    /// Results that fail in both.
-    pub still_failing: usize,
-    /// Results without a change.
-    pub same: usize,
-    /// Subjects that only the later report has.
-    pub added: Vec<String>,
-    /// Subjects that only the earlier report has.
-    pub removed: Vec<String>,
-    /// Results that only the earlier report has, of subjects that both have.
-    pub removed_results: usize,
+    pub list: Vec<Changed<'a>>,
 }
 
-impl Changes {
+impl<'a> Changes<'a> {
+    /// Of a comparison.
+    pub fn of(of: &'a Comparison) -> Self {
+        let lists =
+            [(Trend::Worse, &of.worse), (Trend::LessSure, &of.less_sure), (Trend::Better, &of.better)];
+        let list = lists.iter().flat_map(|(trend, list)| list.iter().map(|of| changed(of, *trend))).collect();
+        let Origin { suite, started, seed, .. } = &of.before;
+        let day = started.split('.').next().unwrap_or_default().trim_end_matches('Z').replacen('T', " ", 1);
+        let when = if day.is_empty() { String::new() } else { format!(" of {day} UTC") };
+        Self { before: format!("the report{when}, suite {suite}, seed {seed}"), of, list }
+    }
+
     /// The gravest change of a check of a subject.
-    pub fn of(&self, subject: &str, label: Option<&str>, check: &str) -> Option<Trend> {
-        let same = |c: &&Changed| c.subject == subject && c.label.as_deref() == label && c.check == check;
-        let grave = |trend: &Trend| match trend {
-            Trend::Worse => 0,
-            Trend::LessSure => 1,
-            Trend::Better => 2,
-        };
-        self.list.iter().filter(same).map(|c| c.trend).min_by_key(grave)
+    pub fn trend(&self, subject: &SubjectId, check: &str) -> Option<Trend> {
+        self.list.iter().find(|c| c.is_of(subject) && c.of.check == check).map(|c| c.trend)
     }
 
     /// Those of a trend.
-    pub fn with(&self, trend: Trend) -> Vec<&Changed> {
-        self.list.iter().filter(|c| c.trend == trend).collect()
+    pub fn with(&self, trend: Trend) -> impl Iterator<Item = &Changed<'a>> {
+        self.list.iter().filter(move |c| c.trend == trend)
     }
 
     /// How many there are of a trend.
     pub fn count(&self, trend: Trend) -> usize {
-        self.list.iter().filter(|c| c.trend == trend).count()
+        self.with(trend).count()
+    }
+}
+
+impl Changed<'_> {
+    /// Whether it is one of a subject.
+    pub fn is_of(&self, subject: &SubjectId) -> bool {
+        self.of.subject == subject.name && self.of.label == subject.label
+    }
+}
+
+fn changed(of: &Change, trend: Trend) -> Changed<'_> {
+    let (what, before, after) = match of.what {
+        What::Verdict { before, after } => {
+            ("verdict", before.map_or("not there", Verdict::word).to_string(), after.word().to_string())
+        }
+        What::Efficiency { before, after } => ("draws that count", ratio(before.0), ratio(after.0)),
+        What::DetectionLimit { before, after } => ("detection limit", ratio(before.0), ratio(after.0)),
+    };
+    Changed { of, trend, what, before, after, places: places(&of.places) }
+}
+
+fn places(places: &[Place]) -> String {
+    let Some(first) = places.first() else { return String::new() };
+    let mode = if first.transport == Transport::Importance { ", importance" } else { "" };
+    let first = first.wo.map_or(String::new(), |wo| direction(wo) + mode);
+    match places.len() {
+        1 => first,
+        n => format!("{first} and {}", counted(n - 1, "more direction")),
     }
 }

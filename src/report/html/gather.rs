@@ -137,8 +137,7 @@ fn choose(subjects: &[Subject], read: Vec<Read>, most: usize) -> Vec<Carried> {
     for (number, of_subject) in pictures {
         for picture in of_subject {
             // Sections of subjects that pass are packed, and their pictures in them.
-            let size =
-                if passes(number) { packed(picture.svg.as_bytes()).len() } else { picture.svg.len() };
+            let size = if passes(number) { packed(picture.svg.as_bytes()).len() } else { picture.svg.len() };
             if size <= pictures_left {
                 pictures_left -= size;
                 left = left.saturating_sub(size);
@@ -150,8 +149,11 @@ fn choose(subjects: &[Subject], read: Vec<Read>, most: usize) -> Vec<Carried> {
         let of_rank = || cells.iter().filter(|(_, c)| c.rank == rank);
         let fine: usize = of_rank().map(|(_, c)| c.fine.len()).sum();
         // The first of each subject is to have cells, be they coarse.
-        let reserved: usize =
-            if rank == 0 { cells.iter().filter(|(_, c)| c.rank == 1).map(|(_, c)| c.coarse.len()).sum() } else { 0 };
+        let reserved: usize = if rank == 0 {
+            cells.iter().filter(|(_, c)| c.rank == 1).map(|(_, c)| c.coarse.len()).sum()
+        } else {
+            0
+        };
         let coarse = fine > left.saturating_sub(reserved);
         let chosen: Vec<(usize, String, String)> = of_rank()
             .filter_map(|(number, c)| {

@@ -7,12 +7,8 @@ use crate::checks::Verdict;
 
 /// `1 check`, `2 checks`.
 pub fn counted(n: usize, one: &str) -> String {
-    let plural = match (n, one) {
-        (1, _) => one.to_string(),
-        (_, "direction") => "directions".into(),
-        (_, word) => format!("{word}s"),
-    };
-    format!("{}\u{a0}{plural}", thousands(n))
+    let plural = if n == 1 { "" } else { "s" };
+    format!("{}\u{a0}{one}{plural}", thousands(n))
 }
 
 /// `12 345`, with narrow spaces.
@@ -124,7 +120,7 @@ fn limits(report: &Report) -> Option<String> {
 
 #[cfg(test)]
 mod tests {
-    use super::super::super::terminal::tests::report;
+    use super::super::super::synthetic::report;
     use super::super::subject::{columns, subjects};
     use super::*;
 

@@ -73,7 +73,7 @@ fn row<'a>(subject: &'a Subject, columns: &[&'a str], changes: Option<&Changes>)
         .map(|id| {
             let check = subject.checks.iter().find(|c| c.id == *id);
             let telling = check.filter(|c| is_telling(c.verdict));
-            let changed = |changes: &Changes| changes.of(&subject.id.name, label, id);
+            let changed = |changes: &Changes| changes.trend(subject.id, id);
             let trend = changes.and_then(changed);
             let linked = telling.is_some() || trend.is_some();
             Cell {

@@ -18,5 +18,4 @@ mod subject;
 #[cfg(test)]
 mod tests;
 
-pub use changes::{Changed, Changes, Trend};
 pub use page::{PAGE, write};

@@ -58,10 +58,8 @@ mod tests {
         assert_eq!(anchor(&subject("lambert", None)), "s-lambert");
         let names = ["a:b=1", "a:b=2", "a b 1", "a-b-1", "A", "a", "a--b", "<script>", "\"><img>", ""];
         let labels = [None, Some("a"), Some("a b")];
-        let mut anchors: Vec<String> = names
-            .iter()
-            .flat_map(|name| labels.map(|label| anchor(&subject(name, label))))
-            .collect();
+        let mut anchors: Vec<String> =
+            names.iter().flat_map(|name| labels.map(|label| anchor(&subject(name, label)))).collect();
         let tame = |a: &String| a.chars().all(|c| c.is_ascii_alphanumeric() || "-._".contains(c));
         assert!(anchors.iter().all(tame), "{anchors:?}");
         assert!(anchors.iter().all(|a| !a.contains("--")), "the mark between section and check: {anchors:?}");

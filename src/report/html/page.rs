@@ -51,7 +51,7 @@ struct Page<'a> {
     unclear: Vec<Told<'a>>,
     unclear_left: usize,
     waivers: Vec<Waiver<'a>>,
-    changes: Option<&'a Changes>,
+    changes: Option<&'a Changes<'a>>,
     groups: Vec<Group<'a>>,
     matrix: Matrix<'a>,
     blocks: Vec<Blocks<'a>>,
@@ -89,7 +89,7 @@ struct Group<'a> {
 
 struct Linked<'a> {
     anchor: String,
-    change: &'a Changed,
+    change: &'a Changed<'a>,
 }
 
 /// Sections under a heading.
@@ -119,16 +119,17 @@ fn symbol_of(verdict: &Verdict) -> char {
     symbol(*verdict)
 }
 
-/// Writes the page of a report into its folder, beside report.json and the evidence;
-/// with what changed since another report, if there is one.
-pub fn write(folder: &Path, report: &Report, changes: Option<&Changes>) -> Result<PathBuf, FileError> {
+/// Writes the page of a report into its folder, beside report.json and the evidence.
+pub fn write(folder: &Path, report: &Report) -> Result<PathBuf, FileError> {
     let path = folder.join(PAGE);
-    write_whole(&path, page(folder, report, changes).as_bytes())?;
+    write_whole(&path, page(folder, report).as_bytes())?;
     Ok(path)
 }
 
-/// The page as text: a function of the report, the evidence in its folder, and the changes.
-pub(super) fn page(folder: &Path, report: &Report, changes: Option<&Changes>) -> String {
+/// The page as text: a function of the report and the evidence in its folder.
+pub(super) fn page(folder: &Path, report: &Report) -> String {
+    let changes = report.comparison.as_ref().map(Changes::of);
+    let changes = changes.as_ref();
     let columns = columns(report);
     let subjects = subjects(report, &columns);
     let words = report.results.len() * BYTES_A_RESULT + MOST_PLAIN;
@@ -212,11 +213,10 @@ fn waivers(report: &Report) -> Vec<Waiver<'_>> {
     rows
 }
 
-fn groups<'a>(changes: &'a Changes, subjects: &[Subject]) -> Vec<Group<'a>> {
-    let linked = |change: &'a Changed| {
-        let of = |s: &&Subject| s.id.name == change.subject && s.id.label == change.label;
-        let section = subjects.iter().find(of);
-        let anchor = section.map(|s| names::check_anchor(&s.anchor, &change.check));
+fn groups<'a>(changes: &'a Changes<'a>, subjects: &[Subject]) -> Vec<Group<'a>> {
+    let linked = |change: &'a Changed<'a>| {
+        let section = subjects.iter().find(|s| change.is_of(s.id));
+        let anchor = section.map(|s| names::check_anchor(&s.anchor, &change.of.check));
         Linked { anchor: anchor.unwrap_or_else(|| "subjects-and-checks".into()), change }
     };
     [
@@ -228,7 +228,7 @@ fn groups<'a>(changes: &'a Changes, subjects: &[Subject]) -> Vec<Group<'a>> {
         title,
         class: trend.class(),
         symbol: trend.symbol(),
-        changes: changes.with(trend).into_iter().map(linked).collect(),
+        changes: changes.with(trend).map(linked).collect(),
     })
     .into()
 }
@@ -236,7 +236,7 @@ fn groups<'a>(changes: &'a Changes, subjects: &[Subject]) -> Vec<Group<'a>> {
 fn blocks<'a>(
     subjects: &'a [Subject<'a>],
     carried: &'a [Carried],
-    changes: Option<&'a Changes>,
+    changes: Option<&'a Changes<'a>>,
 ) -> Vec<Blocks<'a>> {
     let bodies: Vec<String> = subjects
         .par_iter()
@@ -296,10 +296,13 @@ fn summary(subject: &Subject) -> String {
         [only] => format!("{} {}", only.id, at(only)),
         _ => format!("checks: {}", parts.join(", ")),
     };
-    match subject.cases.as_slice() {
+    let measured = match subject.cases.as_slice() {
         [case] if case.wo.is_none() => checks,
         cases => format!("{checks}; {}", counted(cases.len(), "direction")),
-    }
+    };
+    let carried =
+        if subject.carried { "; taken over from an earlier report, as nothing changed" } else { "" };
+    measured + carried
 }
 
 /// Slug, title and text of the manual's pages on causes that are named.

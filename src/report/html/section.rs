@@ -24,7 +24,7 @@ const UNLIKELY: f64 = 1e-6;
 pub struct Section<'a> {
     pub cause: Option<CauseView<'a>>,
     pub ratio: Option<&'a str>,
-    pub changes: Vec<&'a Changed>,
+    pub changes: Vec<&'a Changed<'a>>,
     pub telling: Vec<CheckView<'a>>,
     pub others: Vec<CheckView<'a>>,
     /// For the script: the cases whose cells can be drawn.
@@ -126,12 +126,12 @@ fn given(result: &CheckResult) -> String {
 pub fn section<'a>(
     subject: &'a Subject<'a>,
     carried: &'a Carried,
-    changes: Option<&'a Changes>,
+    changes: Option<&'a Changes<'a>>,
 ) -> Section<'a> {
     let views = subject.checks.iter().map(|check| view(subject, check));
     let (mut telling, others): (Vec<CheckView>, Vec<CheckView>) = views.partition(|v| is_telling(v.verdict));
     telling.sort_by(|a, b| b.verdict.cmp(&a.verdict));
-    let of_subject = |c: &&Changed| c.subject == subject.id.name && c.label == subject.id.label;
+    let of_subject = |c: &&Changed| c.is_of(subject.id);
     let claims = serde_json::to_value(subject.id.claims).ok();
     let claims = claims.as_ref().and_then(|c| c.as_object()).into_iter().flatten();
     Section {
@@ -200,7 +200,12 @@ fn view<'a>(subject: &Subject, check: &Check<'a>) -> CheckView<'a> {
         .attempts
         .iter()
         .map(|a| {
-            format!("{} draws of seed {}: p = {}", thousands(a.samples as usize), a.seed, probability(a.log10_p.0))
+            format!(
+                "{} draws of seed {}: p = {}",
+                thousands(a.samples as usize),
+                a.seed,
+                probability(a.log10_p.0)
+            )
         })
         .collect();
     if is_telling(check.verdict) && !attempts.is_empty() {

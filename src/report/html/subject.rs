@@ -4,7 +4,7 @@ use super::super::json::{CheckResult, Diagnosis, Report, SubjectId, WoAngles};
 use super::names;
 use crate::bsdf::Transport;
 use crate::checks::{self, Verdict};
-use std::collections::{BTreeSet, HashMap};
+use std::collections::{BTreeSet, HashMap, HashSet};
 
 /// A subject with everything that was found of it.
 pub struct Subject<'a> {
@@ -20,6 +20,8 @@ pub struct Subject<'a> {
     pub cases: Vec<Case<'a>>,
     /// What is wrong with it.
     pub found: Option<&'a Diagnosis>,
+    /// Whether its results are those of an earlier report.
+    pub carried: bool,
 }
 
 /// A check of a subject, over all its cases.
@@ -70,7 +72,11 @@ impl Subject<'_> {
         (0..self.cases.len()).reduce(|best, k| {
             let (a, b) = (&self.cases[best], &self.cases[k]);
             let order = (a.verdict.cmp(&b.verdict))
-                .then(if is_telling(a.verdict) { a.size.total_cmp(&b.size) } else { std::cmp::Ordering::Equal })
+                .then(if is_telling(a.verdict) {
+                    a.size.total_cmp(&b.size)
+                } else {
+                    std::cmp::Ordering::Equal
+                })
                 .then(grazing(a).total_cmp(&grazing(b)));
             if order.is_lt() { k } else { best }
         })
@@ -102,9 +108,11 @@ pub fn subjects<'a>(report: &'a Report, columns: &[&'a str]) -> Vec<Subject<'a>>
         }
         rows[number].push(result);
     }
-    let found: HashMap<&str, &Diagnosis> =
-        report.diagnoses.iter().map(|d| (d.subject.as_str(), d)).collect();
-    rows.iter().map(|results| subject(results, columns, &found)).collect()
+    let found: HashMap<&str, &Diagnosis> = report.diagnoses.iter().map(|d| (d.subject.as_str(), d)).collect();
+    let carried: HashSet<(&str, Option<&str>)> =
+        report.subjects.iter().filter(|s| s.carried).map(|s| (s.name.as_str(), s.label.as_deref())).collect();
+    let made = rows.iter().map(|results| subject(results, columns, &found));
+    made.map(|s| Subject { carried: carried.contains(&(&s.id.name, s.id.label.as_deref())), ..s }).collect()
 }
 
 fn subject<'a>(
@@ -127,7 +135,7 @@ fn subject<'a>(
         .collect();
     let verdict = checks.iter().map(|c| c.verdict).max().unwrap_or(Verdict::Skipped);
     let found = found.get(id.name.as_str()).copied().filter(|_| is_wrong(verdict));
-    Subject { anchor: names::anchor(id), id, verdict, checks, cases: cases(results), found }
+    Subject { anchor: names::anchor(id), id, verdict, checks, cases: cases(results), found, carried: false }
 }
 
 fn cases<'a>(results: &[&'a CheckResult]) -> Vec<Case<'a>> {

@@ -1,20 +1,22 @@
 //! Tests of whole pages.
 
-use super::super::json::{Report, WaiverRow, WaiverState};
+use super::super::json::{Report, WaiverRow, WaiverState, WoAngles};
 use super::super::plots::colours;
 use super::super::plots::synthetic::gallery;
 use super::super::saved::write_evidence;
-use super::super::terminal::tests::report;
-use super::changes::{Changed, Changes, Trend};
+use super::super::synthetic::report;
 use super::page::page;
+use crate::bsdf::Transport;
 use crate::checks::Verdict;
+use crate::comparison::{Change, Comparison, Origin, Place, What};
+use crate::evidence::Figure;
 use std::path::Path;
 
 const HOSTILE: &str = "</script><script>x</script><!--\"' onload=\"x\" &amp; \u{202e}<img src=x>";
 
 /// The page of a report without evidence.
 fn of(report: &Report) -> String {
-    page(Path::new("nowhere"), report, None)
+    page(Path::new("nowhere"), report)
 }
 
 /// Without the page's own script and style.
@@ -92,29 +94,31 @@ fn hostile_text_stays_text_everywhere() {
         state: WaiverState::Expired,
         covered: 0,
     });
-    let changed = Changed {
+    let changed = Change {
         subject: text(),
         label: Some(text()),
         check: text(),
-        trend: Trend::Worse,
-        what: "verdict",
-        before: text(),
-        after: text(),
-        places: text(),
+        what: What::Efficiency { before: Figure(0.5), after: Figure(0.4) },
+        places: Vec::new(),
         cause: Some(text()),
         message: text(),
     };
-    let changes = Changes {
-        before: text(),
-        list: vec![changed],
+    let before = Origin { suite: text(), started: text(), ..Origin::default() };
+    hostile.comparison = Some(Comparison {
+        before,
+        worse: vec![changed],
         added: vec![text()],
         removed: vec![text()],
-        ..Changes::default()
-    };
-    let page = page(Path::new("nowhere"), &hostile, Some(&changes));
+        ..Comparison::default()
+    });
+    let page = of(&hostile);
     let markup = markup(&page);
     for part in ["<script>x", "<img", "onload=\"", "<!--", "<svg"] {
-        assert!(!markup.contains(part), "{part}: {}", &markup[markup.find(part).unwrap().saturating_sub(200)..]);
+        assert!(
+            !markup.contains(part),
+            "{part}: {}",
+            &markup[markup.find(part).unwrap().saturating_sub(200)..]
+        );
     }
     assert!(markup.matches("&#60;/script&#62;&#60;script&#62;x").count() > 20, "it is shown as it is");
 }
@@ -144,46 +148,50 @@ fn what_is_not_complete_or_not_needed_is_told() {
         state,
         covered: 1,
     };
-    report.waivers =
-        [WaiverState::Used, WaiverState::Unused, WaiverState::Expired, WaiverState::Exceeded].map(waiver).into();
+    report.waivers = [WaiverState::Used, WaiverState::Unused, WaiverState::Expired, WaiverState::Exceeded]
+        .map(waiver)
+        .into();
     let page = of(&report);
     assert!(page.contains("<b>Not complete:</b> it was interrupted after 3 of 9 cases"));
     let table = page.split_once("<table class=\"waivers\">").unwrap().1.split("</table>").next().unwrap();
     let place = |word: &str| table.find(word).unwrap_or_else(|| panic!("no {word}"));
-    assert!(place("unused: ") < place(">used<") && place("expired: ") < place(">used<"), "the used one is last");
+    assert!(
+        place("unused: ") < place(">used<") && place("expired: ") < place(">used<"),
+        "the used one is last"
+    );
     assert!(table.contains("2.00 %") && table.contains("2026-01-02"));
 }
 
 #[test]
 fn changes_are_told_and_marked() {
-    let changed = |check: &str, trend, before: &str, after: &str| Changed {
+    let place =
+        |theta_deg| Place { wo: Some(WoAngles { theta_deg, phi_deg: 17.0 }), transport: Transport::Radiance };
+    let changed = |check: &str, what| Change {
         subject: "lambert".into(),
         label: None,
         check: check.into(),
-        trend,
-        what: "verdict",
-        before: before.into(),
-        after: after.into(),
-        places: "θo 30° φo 17°".into(),
+        what,
+        places: vec![place(30.0), place(60.0)],
         cause: None,
         message: String::new(),
     };
-    let changes = Changes {
-        before: "suite nightly of 2025-12-31".into(),
-        list: vec![
-            changed("white-furnace", Trend::Worse, "pass", "skipped"),
-            changed("goodness-of-fit", Trend::Better, "fail", "pass"),
-        ],
+    let verdict = |before, after| What::Verdict { before: Some(before), after };
+    let limit = What::DetectionLimit { before: Figure(0.01), after: Figure(0.02) };
+    let comparison = Comparison {
+        before: Origin { suite: "nightly".into(), seed: 7, ..Origin::default() },
+        worse: vec![changed("white-furnace", limit)],
+        better: vec![changed("goodness-of-fit", verdict(Verdict::Fail, Verdict::Pass))],
         removed: vec!["gone:alpha=1".into()],
-        ..Changes::default()
+        ..Comparison::default()
     };
-    let page = page(Path::new("nowhere"), &report(), Some(&changes));
+    let page = of(&report().compared(Some(comparison)));
     for part in [
-        "Compared with suite nightly of 2025-12-31",
+        "Compared with the report, suite nightly, seed 7",
         "1 worse, 1 better, 0 less sure",
         "What got worse",
         "<a href=\"#s-lambert--goodness-of-fit\"><bdi>lambert</bdi></a>",
         "<td>fail</td><td>pass</td>",
+        "<td>1.00 %</td><td>2.00 %</td><td>θo 30° φo 17° and 1\u{a0}more direction</td>",
         "<td class=\"pass\"><a href=\"#s-lambert--goodness-of-fit\"",
         "<span class=\"trend better\" title=\"better than before\">",
         "<bdi>gone:alpha=1</bdi>",
@@ -203,11 +211,15 @@ fn evidence_gives_cells_and_pictures() {
     for result in report.results.iter_mut().filter(|r| r.verdict == Verdict::Fail) {
         result.evidence = Some(path.clone());
     }
-    let drawn = page(folder.path(), &report, None);
-    assert!(drawn.contains("<script type=\"application/x-gonio-cells\" data-cells=\"evidence/case-0003.json.gz\">"));
+    let drawn = page(folder.path(), &report);
+    assert!(
+        drawn.contains(
+            "<script type=\"application/x-gonio-cells\" data-cells=\"evidence/case-0003.json.gz\">"
+        )
+    );
     assert!(drawn.contains("<figure class=\"picture stand-in\"><svg"));
     std::fs::write(folder.path().join(&path), "no gzip").unwrap();
-    let damaged = page(folder.path(), &report, None);
+    let damaged = page(folder.path(), &report);
     assert!(!damaged.contains("data-cells=\""));
     let told = "Not all evidence could be read: evidence/case-0003.json.gz is not a whole gzip file";
     assert!(damaged.contains(told) && !damaged.contains(&folder.path().display().to_string()));
@@ -215,7 +227,8 @@ fn evidence_gives_cells_and_pictures() {
 
 #[test]
 fn a_report_of_nothing_is_a_page() {
-    let empty = Report { results: Vec::new(), diagnoses: Vec::new(), summary: Default::default(), ..report() };
+    let empty =
+        Report { results: Vec::new(), diagnoses: Vec::new(), summary: Default::default(), ..report() };
     assert!(of(&empty).contains("Nothing was checked"));
 }
 
