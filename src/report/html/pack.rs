@@ -7,7 +7,7 @@ use std::io::Write;
 
 /// gzip in base64. Equal bytes give equal text.
 pub fn packed(bytes: &[u8]) -> String {
-    let mut packer = GzBuilder::new().mtime(0).write(Vec::new(), Compression::best());
+    let mut packer = GzBuilder::new().mtime(0).write(Vec::new(), Compression::default());
     packer.write_all(bytes).expect("memory takes every byte");
     STANDARD.encode(packer.finish().expect("memory takes every byte"))
 }

@@ -17,6 +17,7 @@ use crate::cause::Cause;
 use crate::checks::Verdict;
 use askama::Template;
 use rayon::prelude::*;
+use std::cmp::Reverse;
 use std::collections::BTreeSet;
 use std::path::{Path, PathBuf};
 
@@ -24,7 +25,8 @@ use std::path::{Path, PathBuf};
 pub const PAGE: &str = "index.html";
 
 /// Bytes of sections that are plain HTML; those beyond are packed, but for their cause.
-const MOST_PLAIN: usize = 4 << 20;
+/// A browser lays out some 5 MB of them a second.
+const MOST_PLAIN: usize = 3 << 20;
 
 /// Bytes that a result takes in the matrix and in a packed section, measured.
 const BYTES_A_RESULT: usize = 200;
@@ -109,6 +111,7 @@ struct Block<'a> {
     symbol: char,
     /// What is wrong, in the heading.
     told: Option<&'a str>,
+    slug: Option<&'a str>,
     summary: String,
     body: String,
     packed: Option<String>,
@@ -245,16 +248,7 @@ fn blocks<'a>(
             section(subject, carried, changes).render().expect("a string takes every text")
         })
         .collect();
-    let mut plain_left = MOST_PLAIN;
-    let plain: Vec<bool> = subjects
-        .iter()
-        .zip(&bodies)
-        .map(|(subject, body)| {
-            let plain = is_telling(subject.verdict) && body.len() <= plain_left;
-            plain_left -= if plain { body.len() } else { 0 };
-            plain
-        })
-        .collect();
+    let plain = plain(subjects, &bodies);
     let made: Vec<Block> = subjects
         .par_iter()
         .zip(bodies)
@@ -268,6 +262,19 @@ fn blocks<'a>(
     ]
 }
 
+/// Whose sections are plain HTML: of what a person should look at, the gravest first.
+fn plain(subjects: &[Subject], bodies: &[String]) -> Vec<bool> {
+    let mut order: Vec<usize> = (0..subjects.len()).filter(|k| is_telling(subjects[*k].verdict)).collect();
+    order.sort_by_key(|k| Reverse(subjects[*k].verdict));
+    let mut left = MOST_PLAIN;
+    let mut plain = vec![false; subjects.len()];
+    for number in order {
+        plain[number] = bodies[number].len() <= left;
+        left -= if plain[number] { bodies[number].len() } else { 0 };
+    }
+    plain
+}
+
 fn block<'a>(subject: &'a Subject<'a>, body: String, plain: bool) -> Block<'a> {
     let (base, parameters) = names::parts(&subject.id.name);
     let (packed, body) = if plain { (None, body) } else { (Some(packed(body.as_bytes())), String::new()) };
@@ -279,6 +286,7 @@ fn block<'a>(subject: &'a Subject<'a>, body: String, plain: bool) -> Block<'a> {
         verdict: subject.verdict,
         symbol: symbol(subject.verdict),
         told: subject.found.map(|f| f.statement.as_str()),
+        slug: slug(subject),
         summary: summary(subject),
         body,
         packed,
