@@ -39,6 +39,8 @@ class Browser(webdriver.Chrome):
         options.binary_location = "/usr/bin/chromium"
         options.set_capability("goog:loggingPrefs", {"browser": "ALL", "performance": "ALL"})
         super().__init__(options=options, service=webdriver.ChromeService("/usr/bin/chromedriver"))
+        # Others use the machine too.
+        self.set_script_timeout(90)
         self.resize(width, height)
         self.media([{"name": "prefers-color-scheme", "value": "dark" if dark else "light"}])
 
