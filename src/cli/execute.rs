@@ -15,7 +15,7 @@ use crate::engine::{self, Draws, Event, Options};
 use crate::evidence::Meter;
 use crate::report::{
     Carried, Diagnosis, FileError, Files, Look, REPORT, Report, draw_diagnoses, draw_results, evidence_of,
-    summary, write_evidence, write_report,
+    redraw, summary, write_evidence, write_report,
 };
 use crate::suite::{Plan, reproduce};
 use std::collections::{BTreeMap, BTreeSet};
@@ -62,9 +62,7 @@ fn contradictions(plan: &Plan<'static>) -> BTreeSet<String> {
     told
 }
 
-/// Runs one plan and hands its results to the report: where the command line
-/// meets the engine. Evidence is written case by case, so that a run that is
-/// killed leaves what it had.
+/// Runs one plan, keeps what it gives, and tells it.
 fn run(
     plan: &Plan<'static>,
     request: &Request,
@@ -80,70 +78,88 @@ fn run(
     }
     let folder = request.folder(plan);
     let baseline = read_baseline(request, plan, voice)?;
-    let timed = !matches!(request.draws, Draws::Planned);
-    let carried = read_carried(request, plan, !timed, voice)?;
-    let left = (!carried.rows.is_empty()).then(|| carried.left(plan));
-    let progress = Progress::new(plan, voice);
-    let started = jiff::Timestamp::now().to_string();
-    let (cases, draws) = (left, request.draws.clone());
-    let options = Options { threads: request.threads, stop: stop.clone(), deadline: None, cases, draws };
-    let mut unwritten: Option<FileError> = None;
-    let results = engine::run(plan, &options, &mut |event| {
-        progress.observe(event);
-        if let (Event::CaseDone(case), Some(folder)) = (event, &folder)
-            && let Some(evidence) = &case.evidence
-            && let Err(error) = write_evidence(folder, case.index, evidence)
-        {
-            unwritten.get_or_insert(error);
-        }
-    });
-    progress.finish();
-    let diagnosed = diagnose_all(&results, &request.explanations, &options);
-    let mut diagnoses = Diagnosis::all(&results, diagnosed);
-    let plots = match (&folder, request.plots.which()) {
-        (Some(folder), Some(which)) => draw_results(folder, &results, &diagnoses, which),
-        _ => Ok(BTreeMap::new()),
-    };
-    let (plots, unwritten) = match plots {
-        Ok(plots) => (plots, unwritten),
-        Err(error) => (BTreeMap::new(), unwritten.or(Some(error))),
-    };
-    let program = program();
-    let files = Files {
-        command: &|case, check| reproduce(&program, plan, &case.case, results.share, check),
-        evidence: &|case| folder.as_ref().and_then(|_| evidence_of(case)),
-        plot: &|case| plots.get(&case.index).cloned(),
-        time_s: request.time_s,
-    };
-    let drawn = match (&folder, request.plots.which()) {
-        (Some(folder), Some(_)) => draw_diagnoses(folder, &mut diagnoses),
-        _ => Ok(()),
-    };
-    let drawn = drawn.and_then(|()| folder.as_ref().map_or(Ok(()), |folder| carried.write_evidence(folder)));
-    let unwritten = unwritten.or(drawn.err());
-    let report = Report::new(plan, &results, started, &files, carried).diagnosed(diagnoses);
+    let carried = read_carried(request, plan, voice)?;
+    let (mut report, measured) = measure(plan, request, voice, stop, folder.as_deref(), carried);
+    if let (Some(folder), Some(which)) = (&folder, request.plots.which())
+        && report.subjects.iter().any(|s| s.carried)
+    {
+        redraw(folder, &mut report, which)?;
+    }
     let comparison = baseline.as_ref().map(|before| compare(before, &report));
     let report = report.compared(comparison);
-    let written = folder.as_ref().map(|folder| write_report(folder, &report)).transpose();
+    let written = folder.as_ref().map(|folder| keep(&report, request, folder)).transpose();
     if !voice.quiet {
         let look = if request.full { voice.look() } else { voice.screen() };
-        tell(&page(&report, folder.as_deref(), look));
+        let files = written.as_ref().map_or(&[][..], |files| files.as_deref().unwrap_or_default());
+        tell(&page(&report, folder.as_deref(), files, look));
     }
     if request.format == Format::Json {
         let mut text = serde_json::to_string(&report).map_err(|e| CliError::Internal(e.to_string()))?;
         text.push('\n');
         emit(&text)?;
     }
-    if let Some(error) = unwritten {
-        return Err(error.into());
-    }
+    measured?;
     written?;
-    if let Some(folder) = &folder {
-        let stdout_is_taken = request.format == Format::Json;
-        let to = Destination { report: folder, out: folder, stdout_is_taken, quiet: voice.quiet };
-        request.outputs.write(&report, to)?;
-    }
     if stop.load(Ordering::Relaxed) { Ok(Exit::Interrupted) } else { Ok(Exit::of(&report, request.strict)) }
+}
+
+/// Runs a plan and hands its results to the report: where the command line meets the
+/// engine. Evidence is written case by case, so that a run that is killed leaves what it
+/// had. With the report the first file that could not be written, which must not lose it.
+fn measure(
+    plan: &Plan<'static>,
+    request: &Request,
+    voice: Voice,
+    stop: &Arc<AtomicBool>,
+    folder: Option<&Path>,
+    carried: Carried,
+) -> (Report, Result<(), FileError>) {
+    let left = (!carried.rows.is_empty()).then(|| carried.left(plan));
+    let progress = Progress::new(plan, voice);
+    let started = jiff::Timestamp::now().to_string();
+    let (cases, draws) = (left, request.draws.clone());
+    let options = Options { threads: request.threads, stop: stop.clone(), deadline: None, cases, draws };
+    let mut files = Ok(());
+    let mut note = |result: Result<(), FileError>| {
+        if files.is_ok() {
+            files = result;
+        }
+    };
+    let results = engine::run(plan, &options, &mut |event| {
+        progress.observe(event);
+        if let (Event::CaseDone(case), Some(folder)) = (event, folder)
+            && let Some(evidence) = &case.evidence
+        {
+            note(write_evidence(folder, case.index, evidence).map(drop));
+        }
+    });
+    progress.finish();
+    let diagnosed = diagnose_all(&results, &request.explanations, &options);
+    let mut diagnoses = Diagnosis::all(&results, diagnosed);
+    let mut plots = BTreeMap::new();
+    if let Some(folder) = folder {
+        if let Some(which) = request.plots.which() {
+            note(draw_results(folder, &results, &diagnoses, which).map(|drawn| plots = drawn));
+            note(draw_diagnoses(folder, &mut diagnoses));
+        }
+        note(carried.write_evidence(folder));
+    }
+    let program = program();
+    let about = Files {
+        command: &|case, check| reproduce(&program, plan, &case.case, results.share, check),
+        evidence: &|case| folder.and_then(|_| evidence_of(case)),
+        plot: &|case| plots.get(&case.index).cloned(),
+        time_s: request.time_s,
+    };
+    let report = Report::new(plan, &results, started, &about, carried).diagnosed(diagnoses);
+    (report, files)
+}
+
+/// Writes the report, and what else is asked for; the files beside it.
+fn keep(report: &Report, request: &Request, folder: &Path) -> Result<Vec<PathBuf>, CliError> {
+    write_report(folder, report)?;
+    let stdout_is_taken = request.format == Format::Json;
+    request.outputs.write(report, Destination { report: folder, out: folder, stdout_is_taken })
 }
 
 /// The report to compare with, if there is one by now.
@@ -155,21 +171,26 @@ fn read_baseline(request: &Request, plan: &Plan, voice: Voice) -> Result<Option<
 }
 
 /// What need not be measured again.
-fn read_carried(request: &Request, plan: &Plan, samples: bool, voice: Voice) -> Result<Carried, CliError> {
+fn read_carried(request: &Request, plan: &Plan, voice: Voice) -> Result<Carried, CliError> {
     let Some(path) = &request.changed_since else { return Ok(Carried::default()) };
     let path = request.of_plan(path, plan);
+    let samples = matches!(request.draws, Draws::Planned);
     let found = read_if_any("--changed-since", &path, "everything is measured", voice.quiet)?;
     Ok(found.map_or_else(Carried::default, |(folder, report)| Carried::of(&report, &folder, plan, samples)))
 }
 
-/// The page for people.
-fn page(report: &Report, folder: Option<&Path>, look: Look) -> String {
-    let path = |name: &str| folder.map(|f| f.join(name).display().to_string()).unwrap_or_default();
-    let paths = [("report", path(REPORT)), ("evidence", path("evidence")), ("pictures", path("plots"))];
-    let files: Vec<(&str, &str)> = match folder {
-        Some(_) => paths.iter().map(|(what, path)| (*what, path.as_str())).collect(),
-        None => Vec::new(),
-    };
+/// The page for people; `written` are files beside the report.
+fn page(report: &Report, folder: Option<&Path>, written: &[PathBuf], look: Look) -> String {
+    let Some(folder) = folder else { return summary(report, &[], look) };
+    let mut files: Vec<(&str, String)> =
+        [("report", REPORT), ("evidence", "evidence"), ("pictures", "plots")]
+            .map(|(what, name)| (what, folder.join(name).display().to_string()))
+            .into();
+    files.extend(written.iter().map(|path| {
+        let what = if path.extension().is_some_and(|e| e == "html") { "page" } else { "also" };
+        (what, path.display().to_string())
+    }));
+    let files: Vec<(&str, &str)> = files.iter().map(|(what, path)| (*what, path.as_str())).collect();
     summary(report, &files, look)
 }
 

@@ -38,8 +38,6 @@ pub struct Destination<'a> {
     pub out: &'a Path,
     /// Whether standard output has other things to say.
     pub stdout_is_taken: bool,
-    /// Whether paths are not told.
-    pub quiet: bool,
 }
 
 impl Outputs {
@@ -48,18 +46,17 @@ impl Outputs {
         Format::ALL.into_iter().filter(|format| self.to.contains(format)).collect()
     }
 
-    /// Makes what was asked for.
-    pub fn write(&self, report: &Report, destination: Destination) -> Result<(), CliError> {
+    /// The same with the page for people.
+    pub fn with_page(mut self) -> Self {
+        self.to.push(Format::Html);
+        self
+    }
+
+    /// Makes what was asked for; the files.
+    pub fn write(&self, report: &Report, destination: Destination) -> Result<Vec<PathBuf>, CliError> {
         let formats = self.formats();
-        if formats.is_empty() {
-            return Ok(());
-        }
         let site = site(destination.report);
-        for name in write_formats(report, &formats, &site, &real(destination.out))? {
-            if !destination.quiet {
-                tell(&format!("written: {}", destination.out.join(name).display()));
-            }
-        }
+        let names = write_formats(report, &formats, &site, &real(destination.out))?;
         let on_github = std::env::var("GITHUB_ACTIONS").is_ok_and(|value| value == "true");
         if on_github && formats.contains(&Format::Github) {
             let annotations = annotations(report, &site);
@@ -71,7 +68,7 @@ impl Outputs {
                 add_summary(Path::new(&path), report, &site)?;
             }
         }
-        Ok(())
+        Ok(names.into_iter().map(|name| destination.out.join(name)).collect())
     }
 }
 

@@ -6,6 +6,7 @@ use super::error::CliError;
 use super::exit::Exit;
 use super::formats::{Destination, Outputs};
 use super::output::tell;
+use crate::comparison::compare;
 use crate::report::{diagnoses, redraw};
 use std::path::PathBuf;
 
@@ -18,6 +19,9 @@ pub struct ReportArgs {
     /// Which cases get a picture.
     #[arg(long, value_enum, default_value_t = Plots::All, value_name = "WHICH")]
     pub plots: Plots,
+    /// An earlier report: what changed since is told.
+    #[arg(long, value_name = "REPORT")]
+    pub baseline: Option<PathBuf>,
     /// What to write, in place of pictures and diagnoses.
     #[command(flatten)]
     pub outputs: Outputs,
@@ -26,14 +30,20 @@ pub struct ReportArgs {
     pub out: Option<PathBuf>,
 }
 
-/// Draws the pictures of a saved report again, and tells its diagnoses: they were
-/// made with the subject at hand, which evidence is not. Or writes other formats.
+/// Draws the pictures of a saved report again, and tells its diagnoses: they were made
+/// with the subject at hand, which evidence is not. Or writes formats.
 pub fn report(args: &ReportArgs, voice: Voice) -> Result<Exit, CliError> {
     let (folder, mut report) = read(&args.folder)?;
+    if let Some(before) = &args.baseline {
+        let (_, before) = read(before)?;
+        report.comparison = Some(compare(&before, &report));
+    }
     if !args.outputs.to.is_empty() {
         let out = args.out.as_deref().unwrap_or(&folder);
-        let to = Destination { report: &folder, out, stdout_is_taken: false, quiet: voice.quiet };
-        args.outputs.write(&report, to)?;
+        let to = Destination { report: &folder, out, stdout_is_taken: false };
+        for path in args.outputs.write(&report, to)?.iter().filter(|_| !voice.quiet) {
+            tell(&format!("written: {}", path.display()));
+        }
         return Ok(Exit::Passed);
     }
     let drawn = match args.plots.which() {

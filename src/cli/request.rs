@@ -70,7 +70,7 @@ impl Request {
             draws,
             time_s: measuring.time.map(|time| time.as_secs_f64()),
             full: false,
-            outputs: measuring.outputs.clone(),
+            outputs: measuring.outputs.clone().with_page(),
             refused: 0,
             explanations: Arc::new(registry.explanations()),
         })

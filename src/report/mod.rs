@@ -6,6 +6,7 @@ mod changes;
 mod diagnoses;
 mod folder;
 mod formats;
+mod html;
 mod json;
 mod plots;
 mod saved;
@@ -19,6 +20,7 @@ pub use build::Files;
 pub use carry::Carried;
 pub use folder::{REPORT, draw_diagnoses, draw_results, evidence_of, redraw, write_report};
 pub use formats::{Format, SUMMARY_BYTES, Site, annotations, summary_within, write_formats};
+pub use html::{PAGE, page as html_page};
 pub use json::{
     Allocation, AttemptRow, CheckResult, Diagnosis, Machine, Report, SCHEMA_VERSION, SubjectEntry, SubjectId,
     Summary, WaiverRow, WaiverState, WoAngles,

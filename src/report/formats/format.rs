@@ -2,6 +2,7 @@
 
 use super::site::Site;
 use super::{github, gitlab, junit, markdown, sarif};
+use crate::report::html;
 use crate::report::json::Report;
 use crate::report::saved::{FileError, write_whole};
 use std::path::Path;
@@ -43,8 +44,7 @@ impl Format {
     /// Its files: their names and content. `beside` the report they may show its pictures.
     fn files(self, report: &Report, site: &Site, beside: bool) -> Vec<(&'static str, String)> {
         match self {
-            // index.html draws on evidence too, and is made elsewhere.
-            Self::Html => Vec::new(),
+            Self::Html => vec![(html::PAGE, html::page(site.folder(), report))],
             Self::Junit => vec![("junit.xml", junit::junit(report, site))],
             Self::Sarif => vec![("gonio.sarif", sarif::sarif(report, site))],
             Self::Github => vec![

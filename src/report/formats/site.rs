@@ -44,6 +44,11 @@ impl Site {
         &self.report
     }
 
+    /// The report's folder.
+    pub fn folder(&self) -> &Path {
+        &self.folder
+    }
+
     /// Whether that is the report's folder.
     pub fn is_at(&self, folder: &Path) -> bool {
         lexical(&self.current.join(folder)) == lexical(&self.current.join(&self.folder))

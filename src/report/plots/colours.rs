@@ -23,7 +23,7 @@ pub const BAND: Rgb = [0xdc, 0xe9, 0xf3];
 pub const LINES: [Rgb; 3] = [[0x00, 0x72, 0xb2], [0xd5, 0x5e, 0x00], [0x00, 0x9e, 0x73]];
 
 /// Dark violet to yellow, with lightness rising evenly, as matplotlib's viridis.
-const SEQUENTIAL: [Rgb; 6] = [
+pub const SEQUENTIAL: [Rgb; 6] = [
     [0x44, 0x01, 0x54],
     [0x41, 0x44, 0x87],
     [0x2a, 0x78, 0x8e],
@@ -34,7 +34,7 @@ const SEQUENTIAL: [Rgb; 6] = [
 
 /// Blue, white, orange: both ends darken, and differ in hue for every kind of
 /// colour vision.
-const DIVERGING: [Rgb; 5] =
+pub const DIVERGING: [Rgb; 5] =
     [[0x08, 0x3c, 0x7a], [0x5b, 0xa0, 0xd0], [0xfa, 0xfa, 0xfa], [0xf0, 0x9a, 0x4a], [0x9a, 0x3a, 0x00]];
 
 fn between(anchors: &[Rgb], t: f64) -> Rgb {

@@ -3,7 +3,7 @@
 
 use super::colours::{INK, NOTHING, Rgb, SOFT_INK, UNKNOWN, diverging, sequential};
 use super::disc_frame::{Disc, Window, azimuth, cross, ring};
-use super::disc_leaves::{CLIP, Leaves, in_sight, is_met, window};
+use super::disc_leaves::{CLIP, FEWEST, Leaves, SHARE, ZOOM_BELOW, in_sight, is_met, window};
 use super::figure::{Anchor, At, Figure, Pen, TEXT, Type, shortened};
 use super::numbers::{Trim, count, power_of_ten, three_digits, two_digits};
 use crate::bsdf::{Direction, SubjectKind, Transport};
@@ -26,6 +26,26 @@ const FLOOR: f64 = 1e-4;
 
 /// Steps of the colour scales; few enough that images stay small.
 const STEPS: u8 = 64;
+
+/// What a disc's colours and its window hang on, for those who draw it elsewhere.
+#[derive(Clone, Copy, Debug, serde::Serialize)]
+pub struct Scale {
+    /// The scale of densities ends at this part of the largest.
+    pub floor: f64,
+    /// Differences are clipped here, in standard deviations.
+    pub clip: f64,
+    /// Where fewer are expected, a cell is not judged.
+    pub fewest: f64,
+    /// A window holds this share of samples and pdf.
+    pub share: f64,
+    /// A window with a larger half-width is not worth it.
+    pub zoom_below: f64,
+}
+
+/// The one of every picture.
+pub fn scale() -> Scale {
+    Scale { floor: FLOOR, clip: CLIP, fewest: FEWEST, share: SHARE, zoom_below: ZOOM_BELOW }
+}
 
 /// What is said of a case besides its evidence.
 #[derive(Clone, Copy, Debug, Default)]

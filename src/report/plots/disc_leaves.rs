@@ -8,12 +8,12 @@ use crate::sphere::{Partition, Point};
 pub const CLIP: f64 = 5.0;
 
 /// A leaf with fewer expected counts is not judged by its residual.
-const FEWEST: f64 = 5.0;
+pub const FEWEST: f64 = 5.0;
 
 /// A window holds this share of the mass, and is drawn if its half-width is
 /// below [`ZOOM_BELOW`].
-const SHARE: f64 = 0.98;
-const ZOOM_BELOW: f64 = 0.25;
+pub const SHARE: f64 = 0.98;
+pub const ZOOM_BELOW: f64 = 0.25;
 
 /// Per leaf, what is drawn.
 pub struct Leaves {

@@ -6,7 +6,7 @@ mod axes;
 mod azimuth;
 mod by_theta;
 mod chosen;
-mod colours;
+pub(super) mod colours;
 mod disc;
 mod disc_frame;
 mod disc_leaves;
@@ -38,5 +38,6 @@ pub use pictures::{Kind, Picture, of_case as pictures_of_case, of_subject as pic
 pub use reciprocity_map::picture as reciprocity_picture;
 
 pub(super) use chosen::file_name;
+pub(super) use disc::{Scale, scale as disc_scale};
 pub(super) use figure::shortened;
 pub(super) use plane::of_diagnosis as diagnosis_picture;
