@@ -14,6 +14,7 @@ mod schema;
 #[cfg(test)]
 pub(crate) mod synthetic;
 mod terminal;
+mod visible;
 mod wording;
 
 pub use build::Files;

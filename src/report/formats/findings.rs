@@ -1,11 +1,11 @@
 //! What is worth an alert.
 
 use super::site::{Site, Spot};
-use super::visible::{one_line, visible};
 use crate::bsdf::Transport;
 use crate::checks::Verdict;
 use crate::comparison::Comparison;
 use crate::report::json::{CheckResult, Diagnosis, Report, SubjectId};
+use crate::report::visible::{one_line, visible};
 use crate::report::wording::{direction, effect};
 use std::collections::{BTreeMap, BTreeSet};
 

@@ -4,9 +4,9 @@ use super::findings::{Finding, findings};
 use super::markdown::blocks;
 use super::markdown_text::cut;
 use super::site::{Site, Spot};
-use super::visible::{one_line, visible};
 use crate::checks::Verdict;
 use crate::report::json::Report;
+use crate::report::visible::{one_line, visible};
 
 /// Annotations of each kind that GitHub keeps of one step.
 const ANNOTATIONS: usize = 10;

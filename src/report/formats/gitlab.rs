@@ -3,9 +3,9 @@
 
 use super::findings::{Finding, findings};
 use super::site::{Site, Spot};
-use super::visible::one_line;
 use crate::checks::Verdict;
 use crate::report::json::Report;
+use crate::report::visible::one_line;
 use serde::Serialize;
 
 #[derive(Serialize)]

@@ -2,9 +2,9 @@
 
 use super::findings::{in_short, name, place};
 use super::site::Site;
-use super::visible::{one_line, visible};
 use crate::checks::Verdict;
 use crate::report::json::{CheckResult, Report, SubjectId};
+use crate::report::visible::{one_line, visible};
 use crate::report::wording::facts;
 use quick_junit::{NonSuccessKind, Property, TestCase, TestCaseStatus, TestSuite};
 use std::collections::{BTreeMap, BTreeSet};

@@ -1,6 +1,6 @@
 //! Text within Markdown, as GitHub and GitLab render it.
 
-use super::visible::{one_line, visible};
+use crate::report::visible::{one_line, visible};
 
 /// Invisible, and the end of what looks like a name or an address.
 const BREAK: char = '\u{200b}';

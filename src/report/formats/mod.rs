@@ -22,7 +22,7 @@
 //! first lines of the Markdown.
 //!
 //! Text comes from anywhere: names of files, messages of plugins. What no output can hold
-//! is replaced ([`visible`](visible::visible)), and each format escapes what means
+//! is replaced ([`visible`](super::visible::visible)), and each format escapes what means
 //! something in it.
 
 mod findings;
@@ -36,7 +36,6 @@ mod markdown_text;
 mod sarif;
 mod sarif_rules;
 mod site;
-mod visible;
 
 #[cfg(test)]
 mod examples;

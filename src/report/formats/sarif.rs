@@ -5,9 +5,9 @@ use super::findings::{Finding, findings};
 use super::manual::HOME;
 use super::sarif_rules::{Descriptor, rules};
 use super::site::Site;
-use super::visible::{one_line, visible};
 use crate::checks::Verdict;
 use crate::report::json::Report;
+use crate::report::visible::{one_line, visible};
 use serde::Serialize;
 use std::collections::BTreeMap;
 

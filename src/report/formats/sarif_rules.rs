@@ -3,9 +3,9 @@
 use super::findings::{Finding, Rule};
 use super::manual::{HOME, cause_page, checks_page};
 use super::sarif::{Help, Message};
-use super::visible::one_line;
 use crate::cause::Cause;
 use crate::checks;
+use crate::report::visible::one_line;
 use serde::Serialize;
 use std::collections::BTreeSet;
 

@@ -1,5 +1,6 @@
 //! Lines, colours and symbols.
 
+use super::super::visible::visible;
 use super::super::wording::wrapped;
 use crate::checks::Verdict;
 
@@ -54,15 +55,27 @@ pub fn line(text: &mut String, content: &str) {
     text.push('\n');
 }
 
+/// What subjects say is shown, not obeyed: neither control characters by a terminal, nor
+/// lines that begin with `::` by GitHub Actions, which takes them for commands wherever a
+/// log has them.
+fn shown(content: &str) -> String {
+    let lines = visible(content);
+    let shown = lines.split('\n').map(|line| match line.trim_start().starts_with("::") {
+        true => format!("| {}", line.trim_start()),
+        false => line.to_string(),
+    });
+    shown.collect::<Vec<_>>().join("\n")
+}
+
 pub fn indented(text: &mut String, content: &str, indent: usize, look: Look) {
-    for part in wrapped(content, look.width() - indent) {
+    for part in wrapped(&shown(content), look.width() - indent) {
         line(text, &format!("{:indent$}{part}", ""));
     }
 }
 
 /// A word in bold and what it says, indented.
 pub fn told(text: &mut String, word: &str, content: &str, look: Look) {
-    let parts = wrapped(&format!("{word}: {content}"), look.width() - 4);
+    let parts = wrapped(&shown(&format!("{word}: {content}")), look.width() - 4);
     for (k, part) in parts.iter().enumerate() {
         match part.strip_prefix(word).filter(|_| k == 0) {
             Some(rest) => line(text, &format!("    {}{rest}", look.paint("1", word))),

@@ -142,3 +142,11 @@ fn waivers_and_budgets_are_told() {
     }
     assert_eq!(text.matches("waiver of").count(), 3);
 }
+
+#[test]
+fn what_a_subject_says_is_shown_and_not_obeyed() {
+    let mut report = report();
+    report.results[4].reason = Some("it said\n::error::all is lost\n\u{1b}[2J".into());
+    let text = summary(&report, &[], Look { width: 100, colour: false, lines: None });
+    assert!(text.contains("    | ::error::all is lost\n") && !text.contains('\u{1b}'), "{text}");
+}
