@@ -7,7 +7,9 @@ use common::tools::tools;
 use gonio::bsdf::Direction;
 use gonio::checks::Verdict;
 use gonio::evidence::Evidence;
-use gonio::report::{CheckResult, Report, evidence_path, html, read_evidence, write_evidence, write_report};
+use gonio::report::{
+    CheckResult, PAGE, Report, evidence_path, html_page, read_evidence, write_evidence, write_report,
+};
 use gonio::sphere::{Chart, Partition, Shape};
 use std::collections::BTreeSet;
 use std::f64::consts::TAU;
@@ -110,14 +112,21 @@ fn hostile(pages: &Path, report: &Report) {
     report.suite = HOSTILE.into();
     report.partial = Some(HOSTILE.into());
     write_report(&folder, &report).unwrap();
-    html::write(&folder, &report).unwrap();
+    write_page(&folder, &report);
+}
+
+/// Writes a report's page beside it.
+fn write_page(folder: &Path, report: &Report) -> PathBuf {
+    let path = folder.join(PAGE);
+    std::fs::write(&path, html_page(folder, report)).unwrap();
+    path
 }
 
 /// A page that has lost its evidence, which lies elsewhere.
 fn detached(pages: &Path, report: &Report) {
     let folder = pages.join("detached");
     std::fs::create_dir_all(&folder).unwrap();
-    html::write(&folder, report).unwrap();
+    write_page(&folder, report);
     // Too late for the page to carry it, in time for the browser to fetch it.
     linked(pages, "detached");
 }
@@ -138,7 +147,7 @@ fn compared(pages: &Path, report: &Report) {
     let earlier = pages.join("earlier");
     write_report(&earlier, &before).unwrap();
     let run = Command::new(env!("CARGO_BIN_EXE_gonio"))
-        .args(["report", "--plots", "none", "--baseline"])
+        .args(["report", "--to", "html", "--baseline"])
         .args([&earlier, &folder])
         .output()
         .unwrap();
@@ -179,7 +188,7 @@ fn shapes(pages: &Path, report: &Report) {
     }
     let report = Report { results, diagnoses: Vec::new(), ..report.clone() };
     write_report(&folder, &report).unwrap();
-    html::write(&folder, &report).unwrap();
+    write_page(&folder, &report);
     std::fs::write(folder.join("expected.json"), serde_json::to_vec(&expected).unwrap()).unwrap();
 }
 
@@ -257,7 +266,7 @@ fn large(pages: &Path) {
     let met: BTreeSet<&str> = large.results.iter().map(|r| r.check.as_str()).collect();
     assert_eq!((names.len(), met.len()), (2000, 12));
     let begun = Instant::now();
-    let path = html::write(&folder, &large).unwrap();
+    let path = write_page(&folder, &large);
     let size = std::fs::metadata(path).unwrap().len();
     println!("{cases} cases: {:.1} MB in {:.1} s", size as f64 / 1e6, begun.elapsed().as_secs_f64());
     assert!(size < 20_000_000, "{size} bytes");

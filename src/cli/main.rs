@@ -2,9 +2,10 @@
 
 use super::args::{Args, Command};
 use super::error::CliError;
+use super::execute::execute;
 use super::exit::Exit;
 use super::output::tell;
-use super::{calibrate, completions, diff, explain, figures, list, new, report, run, schema, worker};
+use super::{calibrate, completions, diff, explain, figures, list, new, report, schema, worker};
 use crate::plugins::set_gonio;
 use crate::registry::Registry;
 use clap::Parser;
@@ -45,8 +46,8 @@ pub fn main(registry: Registry) -> ExitCode {
 fn obey(args: Args, registry: &Registry) -> Result<Exit, CliError> {
     let voice = args.voice;
     match args.command {
-        Command::Run(args) => run::execute(&args.request(registry)?, voice),
-        Command::Check(args) => run::execute(&args.request(registry)?, voice),
+        Command::Run(args) => execute(&args.request(registry)?, voice),
+        Command::Check(args) => execute(&args.request(registry)?, voice),
         Command::List(args) => list::list(&args, registry),
         Command::Explain(args) => explain::explain(&args),
         Command::Report(args) => report::report(&args, voice),

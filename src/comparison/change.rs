@@ -3,7 +3,7 @@
 use crate::bsdf::Transport;
 use crate::checks::Verdict;
 use crate::evidence::Figure;
-use crate::report::{Report, WoAngles};
+use crate::report::{CheckResult, Report, WoAngles};
 use schemars::JsonSchema;
 use serde::{Deserialize, Serialize};
 
@@ -123,6 +123,18 @@ impl Comparison {
             && self.added.is_empty()
             && self.removed.is_empty()
             && self.removed_results == 0
+    }
+
+    /// Whether the baseline fails there too: a known failure fails no gate.
+    pub fn knows(&self, result: &CheckResult) -> bool {
+        let place = Place { wo: result.wo, transport: result.transport };
+        let new = |c: &Change| {
+            c.subject == result.subject.name
+                && c.label == result.subject.label
+                && c.check == result.check
+                && c.places.contains(&place)
+        };
+        matches!(result.verdict, Verdict::Fail | Verdict::Error) && !self.worse.iter().any(new)
     }
 
     /// Whether a subject errs that did not.

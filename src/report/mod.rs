@@ -1,10 +1,12 @@
-//! Events and results to terminal, JSON and SVG.
+//! Events and results to terminal, JSON, SVG and the formats of CI servers.
 
 mod build;
 mod carry;
+mod changes;
 mod diagnoses;
 mod folder;
-pub mod html;
+mod formats;
+mod html;
 mod json;
 mod plots;
 mod saved;
@@ -17,13 +19,16 @@ mod wording;
 pub use build::Files;
 pub use carry::Carried;
 pub use folder::{REPORT, draw_diagnoses, draw_results, evidence_of, redraw, write_report};
+pub use formats::{Format, SUMMARY_BYTES, Site, annotations, summary_within, write_formats};
+pub use html::{PAGE, page as html_page};
 pub use json::{
     Allocation, AttemptRow, CheckResult, Diagnosis, Machine, Report, SCHEMA_VERSION, SubjectEntry, SubjectId,
     Summary, WaiverRow, WaiverState, WoAngles,
 };
 pub use plots::{
-    Caption, Histogram, Interval, IntervalPlot, IntervalRow, Line, LinePlot, Mark, MatrixPlot, MatrixRow,
-    Pictured, Which, albedo_curve, disc_picture, draw, p_value_histogram, reciprocity_picture,
+    Caption, Histogram, Interval, IntervalPlot, IntervalRow, Kind, Line, LinePlot, Mark, MatrixPlot,
+    MatrixRow, Picture, Pictured, Which, albedo_curve, disc_picture, draw, p_value_histogram,
+    pictures_of_case, pictures_of_subject, reciprocity_picture,
 };
 pub use saved::{FileError, evidence_path, read_evidence, write_evidence, write_whole};
 pub use schema::{schema, schema_text};

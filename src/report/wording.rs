@@ -80,6 +80,20 @@ pub fn certainty(result: &CheckResult) -> Option<String> {
     Some(text)
 }
 
+/// What a result says: its effect, how certain that is, where it is worst, and why.
+pub fn facts(result: &CheckResult) -> Vec<String> {
+    let mut facts = Vec::new();
+    if let Some(found) = &result.effect {
+        let channel = result.channel.as_ref().map_or(String::new(), |c| format!(" (channel {c})"));
+        facts.push(effect(found) + &channel);
+    }
+    facts.extend(certainty(result));
+    facts.extend(result.worst.as_ref().map(worst));
+    facts.push(result.message.clone());
+    facts.extend(result.reason.clone().filter(|reason| *reason != result.message));
+    facts
+}
+
 /// A given direction.
 pub fn direction(wo: WoAngles) -> String {
     format!("θo {}° φo {}°", tidy(wo.theta_deg), tidy(wo.phi_deg))

@@ -18,4 +18,4 @@ mod subject;
 #[cfg(test)]
 mod tests;
 
-pub use page::{PAGE, write};
+pub use page::{PAGE, page};

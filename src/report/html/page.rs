@@ -1,7 +1,6 @@
 //! The whole page.
 
 use super::super::json::{Report, WaiverRow, WaiverState};
-use super::super::saved::{FileError, write_whole};
 use super::super::terminal::symbol;
 use super::super::wording::ratio;
 use super::changes::{Changed, Changes, Trend};
@@ -19,7 +18,7 @@ use askama::Template;
 use rayon::prelude::*;
 use std::cmp::Reverse;
 use std::collections::BTreeSet;
-use std::path::{Path, PathBuf};
+use std::path::Path;
 
 /// The file of the page.
 pub const PAGE: &str = "index.html";
@@ -130,15 +129,8 @@ fn symbol_of(verdict: &Verdict) -> char {
     symbol(*verdict)
 }
 
-/// Writes the page of a report into its folder, beside report.json and the evidence.
-pub fn write(folder: &Path, report: &Report) -> Result<PathBuf, FileError> {
-    let path = folder.join(PAGE);
-    write_whole(&path, page(folder, report).as_bytes())?;
-    Ok(path)
-}
-
 /// The page as text: a function of the report and the evidence in its folder.
-pub(super) fn page(folder: &Path, report: &Report) -> String {
+pub fn page(folder: &Path, report: &Report) -> String {
     let changes = report.comparison.as_ref().map(Changes::of);
     let changes = changes.as_ref();
     let columns = columns(report);

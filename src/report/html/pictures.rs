@@ -1,6 +1,6 @@
 //! The pictures of a subject as parts of a page.
 
-use super::super::plots::{Caption, albedo_curve, disc_picture, ratio_picture, reciprocity_picture};
+use super::super::plots::{Kind, Pictured, diagnosis_picture, pictures_of_case, pictures_of_subject};
 use super::subject::{Subject, is_telling};
 use crate::evidence::Evidence;
 
@@ -15,32 +15,53 @@ pub struct Picture {
 /// The counts over pdf() of a diagnosis.
 pub fn of_diagnosis(subject: &Subject) -> Option<String> {
     let found = subject.found?;
-    Some(inline(ratio_picture(&found.subject, found.profile.as_ref()?)))
+    Some(inline(diagnosis_picture(&found.subject, found.profile.as_ref()?)))
 }
 
-/// What is drawn of the cases that were read, by their number; `all` if that is every one.
+/// What is drawn of the cases that were read, by their number: of the first everything,
+/// of pairs the case in which they are worst, and curves over all if `all` were read.
 pub fn of_cases(subject: &Subject, read: &[(usize, Evidence)], all: bool) -> Vec<Picture> {
-    let mut pictures = Vec::new();
-    let mut add = |svg: Option<String>, stands_for_discs| {
-        pictures.extend(svg.map(|svg| Picture { svg: inline(svg), stands_for_discs }));
+    let profile = subject.found.and_then(|found| found.profile.as_ref());
+    let cases: Vec<Pictured> = read
+        .iter()
+        .map(|(number, evidence)| Pictured {
+            index: *number,
+            group: "",
+            evidence,
+            suspicious: is_telling(subject.cases[*number].verdict),
+            root_d: subject.cases[*number].root_d,
+            diagnosed: profile,
+        })
+        .collect();
+    let of = |number: Option<usize>| {
+        let case = cases.iter().find(|case| Some(case.index) == number);
+        case.map_or(Vec::new(), |case| pictures_of_case(case, &cases))
     };
-    let evidence = |number: usize| read.iter().find(|(k, _)| *k == number).map(|(_, e)| e);
-    let shown = subject.first_case().filter(|_| is_telling(subject.verdict));
-    if let Some((number, first)) = shown.and_then(|k| Some((k, evidence(k)?))) {
-        add(disc_picture(first, Caption { root_d: subject.cases[number].root_d }), true);
-    }
-    // Of pairs the case in which they are worst.
     let asymmetric = subject.checks.iter().find(|c| c.id == "reciprocity" && is_telling(c.verdict));
     let path = asymmetric.and_then(|check| check.results[0].evidence.as_deref());
-    let number = path.and_then(|path| subject.cases.iter().position(|c| c.evidence == Some(path)));
-    if let Some(worst) = number.and_then(evidence) {
-        add(reciprocity_picture(worst), false);
+    let worst_pairs = path.and_then(|path| subject.cases.iter().position(|c| c.evidence == Some(path)));
+    let first = subject.first_case();
+    // The picture of the diagnosis has it already.
+    let told = |kind| kind == Kind::Plane && profile.is_some();
+    let mut drawn = of(first);
+    // What passes is packed, and is not read without the script that draws discs.
+    let packed = !is_telling(subject.verdict);
+    drawn.retain(|picture| {
+        !told(picture.kind)
+            && (picture.kind != Kind::Reciprocity || worst_pairs.is_none())
+            && (picture.kind != Kind::Discs || !packed)
+    });
+    if worst_pairs.is_some() {
+        drawn.extend(of(worst_pairs).into_iter().filter(|picture| picture.kind == Kind::Reciprocity));
     }
     if all && read.len() > 1 {
         let every: Vec<&Evidence> = read.iter().map(|(_, e)| e).collect();
-        add(albedo_curve(&subject.id.name, &every), false);
+        drawn.extend(pictures_of_subject(&subject.id.name, &every));
     }
-    pictures
+    drawn
+        .into_iter()
+        .map(|picture| Picture { stands_for_discs: picture.kind == Kind::Discs, svg: inline(picture.svg) })
+        .collect()
 }
 
 /// Without what a page's policy of styles forbids; the page's own style says it.

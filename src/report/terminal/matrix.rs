@@ -20,7 +20,7 @@ fn is_finding(verdict: Verdict) -> bool {
 }
 
 /// Three letters for a check's column.
-fn short(check: &str) -> String {
+pub fn short(check: &str) -> String {
     let known = match check {
         "sanity" => "san",
         "determinism" => "det",
@@ -54,7 +54,7 @@ pub fn case_of(result: &CheckResult) -> (String, String, String) {
 }
 
 /// Checks in the order of reports, unknown ones last.
-fn columns(report: &Report) -> Vec<&str> {
+pub fn columns(report: &Report) -> Vec<&str> {
     let met: BTreeSet<&str> = report.results.iter().map(|r| r.check.as_str()).collect();
     let known = checks::all().iter().map(|c| c.id()).filter(|id| met.contains(id));
     let unknown = met.iter().copied().filter(|id| checks::find(id).is_none());

@@ -11,4 +11,5 @@ mod tests;
 pub use blocks::diagnoses;
 pub use comparison::comparison;
 pub use look::{Look, symbol};
+pub(super) use matrix::{columns, short};
 pub use summary::summary;
