@@ -10,16 +10,18 @@ SECONDS = 2.0
 
 
 def opened(browser):
+    """Seconds to load and to filter: by the clock, and of a processor on the page's thread."""
+    browser.execute_cdp_cmd("Performance.enable", {"timeDomain": "threadTicks"})
     begun = time.monotonic()
     browser.get(file_url("large"))
-    loaded = time.monotonic()
     browser.execute_async_script(
         """const done = arguments[0];
-        const box = document.querySelector('input[name=verdict][value=fail]');
-        box.click();
+        document.querySelector('input[name=verdict][value=fail]').click();
         requestAnimationFrame(() => setTimeout(done, 0));"""
     )
-    return loaded - begun, time.monotonic() - begun
+    clock = time.monotonic() - begun
+    metrics = browser.execute_cdp_cmd("Performance.getMetrics", {})["metrics"]
+    return clock, next(m["value"] for m in metrics if m["name"] == "TaskDuration")
 
 
 def test_opens_and_filters_in_time():
@@ -27,11 +29,11 @@ def test_opens_and_filters_in_time():
     for _ in range(3):
         with Browser() as browser:
             times.append(opened(browser))
-            shown = browser.find_element(By.ID, "shown").text
-            assert shown == "40 of 2000 subjects"
-    print("loaded, and filtered:", [f"{a:.2f} s, {b:.2f} s" for a, b in times])
-    # Others use the machine too: the best of three is the page's own time.
-    assert min(whole for _, whole in times) < SECONDS, times
+            assert browser.find_element(By.ID, "shown").text == "40 of 2000 subjects"
+    told = ", ".join(f"{clock:.2f} s ({processor:.2f} s of a processor)" for clock, processor in times)
+    print("loaded and filtered in", told)
+    # What the page costs; the clock goes on while a busy machine works for others.
+    assert min(processor for _, processor in times) < SECONDS, told
 
 
 def test_a_section_that_passes_opens_at_once():

@@ -182,6 +182,13 @@ def test_prints_open_and_without_controls(browser):
     for controls in ["#filters", "button", "input", ".skip"]:
         assert browser.execute_script(shown, controls) == 0, controls
     browser.media()
+    browser.execute_script("dispatchEvent(new Event('beforeprint'))")
+    browser.media(kind="print")
+    assert browser.execute_script(shown, ".stand-in svg") >= 2, "pictures stand for the discs"
+    assert browser.execute_script(shown, ".discs") == 0
+    closed = "return [...document.querySelectorAll('.subject:not(.packed) details')].filter(d => !d.open).length"
+    assert browser.execute_script(closed) == 0
+    browser.media()
     printed = browser.execute_cdp_cmd("Page.printToPDF", {"printBackground": False})
     pdf = base64.b64decode(printed["data"])
     assert pdf.startswith(b"%PDF") and len(pdf) > 50_000

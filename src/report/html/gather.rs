@@ -14,6 +14,10 @@ use std::path::Path;
 /// each takes some milliseconds, and a page cannot carry them all.
 const MOST_CASES: usize = 1500;
 
+/// Where there are more subjects, those that pass have no pictures: some take as long to
+/// draw as a case takes to read.
+const MOST_DRAWN: usize = 400;
+
 /// Bytes of a page's cells and pictures at most.
 const MOST_BYTES: usize = 12 << 20;
 
@@ -75,8 +79,11 @@ struct Read {
 /// What the page carries of each subject. `words` are the bytes that it has besides.
 pub fn gather(folder: &Path, subjects: &[Subject], words: usize) -> Vec<Carried> {
     let wanted = wanted(subjects);
-    let read: Vec<Read> =
-        subjects.par_iter().zip(&wanted).map(|(s, wanted)| read(folder, s, wanted)).collect();
+    let crowded = subjects.len() > MOST_DRAWN;
+    let one = |(subject, wanted): (&Subject, &Vec<Option<Rank>>)| {
+        read(folder, subject, wanted, is_telling(subject.verdict) || !crowded)
+    };
+    let read: Vec<Read> = subjects.par_iter().zip(&wanted).map(one).collect();
     choose(subjects, read, PAGE.saturating_sub(words).min(MOST_BYTES))
 }
 
@@ -117,7 +124,7 @@ fn is_ours(path: &str) -> bool {
     name.is_some_and(|name| !name.is_empty() && name.chars().all(tame))
 }
 
-fn read(folder: &Path, subject: &Subject, wanted: &[Option<Rank>]) -> Read {
+fn read(folder: &Path, subject: &Subject, wanted: &[Option<Rank>], drawn: bool) -> Read {
     let mut unread = None;
     let mut of_cases: Vec<(usize, Evidence)> = Vec::new();
     let mut cells = Vec::new();
@@ -146,7 +153,7 @@ fn read(folder: &Path, subject: &Subject, wanted: &[Option<Rank>]) -> Read {
     let all = of_cases.len() == subject.cases.len();
     Read {
         ratio: pictures::of_diagnosis(subject),
-        pictures: pictures::of_cases(subject, &of_cases, all),
+        pictures: if drawn { pictures::of_cases(subject, &of_cases, all) } else { Vec::new() },
         cells,
         has_cells,
         unread,

@@ -27,8 +27,10 @@ pub const PAGE: &str = "index.html";
 /// A browser lays out some 5 MB of them a second.
 const MOST_PLAIN: usize = 3 << 20;
 
-/// Bytes that a result takes in the matrix and in a packed section, measured.
-const BYTES_A_RESULT: usize = 200;
+/// Bytes that a check of a subject takes in the matrix and in a packed section, and each
+/// direction of it, measured.
+const BYTES_A_CHECK: usize = 300;
+const BYTES_A_RESULT: usize = 10;
 
 /// Subjects told at the top; the rest are in the matrix.
 const MOST_TOLD: usize = 100;
@@ -100,6 +102,12 @@ struct Blocks<'a> {
     blocks: Vec<Block<'a>>,
 }
 
+impl Blocks<'_> {
+    fn has_packed(&self) -> bool {
+        self.blocks.iter().any(|b| b.packed.is_some())
+    }
+}
+
 /// The section of a subject.
 struct Block<'a> {
     anchor: &'a str,
@@ -127,7 +135,8 @@ pub fn page(folder: &Path, report: &Report) -> String {
     let changes = changes.as_ref();
     let columns = columns(report);
     let subjects = subjects(report, &columns);
-    let words = report.results.len() * BYTES_A_RESULT + MOST_PLAIN;
+    let checks: usize = subjects.iter().map(|s| s.checks.len()).sum();
+    let words = checks * BYTES_A_CHECK + report.results.len() * BYTES_A_RESULT + MOST_PLAIN;
     let carried = gather(folder, &subjects, words);
     let blocks = blocks(&subjects, &carried, changes);
     let verdict = head::verdict(report);

@@ -44,8 +44,12 @@ pub fn of_cases(subject: &Subject, read: &[(usize, Evidence)], all: bool) -> Vec
     // The picture of the diagnosis has it already.
     let told = |kind| kind == Kind::Plane && profile.is_some();
     let mut drawn = of(first);
+    // What passes is packed, and is not read without the script that draws discs.
+    let packed = !is_telling(subject.verdict);
     drawn.retain(|picture| {
-        !told(picture.kind) && (picture.kind != Kind::Reciprocity || worst_pairs.is_none())
+        !told(picture.kind)
+            && (picture.kind != Kind::Reciprocity || worst_pairs.is_none())
+            && (picture.kind != Kind::Discs || !packed)
     });
     if worst_pairs.is_some() {
         drawn.extend(of(worst_pairs).into_iter().filter(|picture| picture.kind == Kind::Reciprocity));

@@ -217,7 +217,7 @@ fn evidence_gives_cells_and_pictures() {
             "<script type=\"application/x-gonio-cells\" data-cells=\"evidence/case-0003.json.gz\">"
         )
     );
-    assert!(drawn.contains("<figure class=\"picture stand-in\"><svg"));
+    assert!(drawn.contains("<noscript><figure class=\"picture stand-in\"><svg"));
     std::fs::write(folder.path().join(&path), "no gzip").unwrap();
     let damaged = page(folder.path(), &report);
     assert!(!damaged.contains("data-cells=\""));

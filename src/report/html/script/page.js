@@ -49,17 +49,26 @@ function offerCopies(within) {
 
 // ---- Sections ----
 
-/** Unpacks a section that passes, the first time that it is opened. */
+/** What is packed comes after the script. */
+const arrived = new Promise((resolve) => {
+  if (document.readyState === "loading") document.addEventListener("DOMContentLoaded", resolve);
+  else resolve();
+});
+
+async function unpackInto(details) {
+  const body = element("div");
+  details.append(body);
+  await arrived;
+  const bytes = await unpack(fromBase64(byId(`p-${details.dataset.packed}`).textContent));
+  // The page's own markup: names in it are escaped where it is made.
+  body.innerHTML = new TextDecoder().decode(bytes);
+  prepare(body);
+}
+
+/** Opens a section that passes; the first time it is unpacked. */
 async function open(details) {
   details.open = true;
-  if (!details.unpacking) {
-    details.unpacking = unpack(fromBase64(byId(`p-${details.dataset.packed}`).textContent)).then((bytes) => {
-      const body = details.querySelector(".body");
-      // The page's own markup: names in it are escaped where it is made.
-      body.innerHTML = new TextDecoder().decode(bytes);
-      prepare(body);
-    });
-  }
+  details.unpacking ??= unpackInto(details);
   await details.unpacking;
 }
 
@@ -173,7 +182,8 @@ const scales = json(byId("scales"));
 let carried = null;
 
 /** Cells that the page carries, by the file of their evidence. */
-function carriedCells(path) {
+async function carriedCells(path) {
+  await arrived;
   carried ??= new Map(all("script[data-cells]").map((script) => [script.dataset.cells, script]));
   return carried.get(path);
 }
@@ -184,7 +194,7 @@ const loaded = new Map();
 async function load(chosen, ask) {
   const path = chosen.evidence;
   if (!loaded.has(path)) {
-    const script = carriedCells(path);
+    const script = await carriedCells(path);
     const cells = script ? decodeCells(await unpack(fromBase64(script.textContent))) : await fetched(path, ask);
     loaded.set(path, cells);
   }
@@ -240,5 +250,13 @@ prepare(document);
 prepareSections();
 prepareFilters();
 follow();
-// On paper everything that a reader could open is open.
-window.addEventListener("beforeprint", () => all("details:not([data-packed])").forEach((d) => (d.open = true)));
+// On paper everything that a reader could open is open, and discs are pictures: canvases
+// are drawn when they come into sight, which is too late.
+window.addEventListener("beforeprint", () => {
+  all("details:not([data-packed])").forEach((details) => (details.open = true));
+  all(".subject noscript").forEach((hidden) => {
+    const figure = element("div", { class: "for-paper" });
+    figure.innerHTML = hidden.textContent;
+    hidden.replaceWith(figure);
+  });
+});
