@@ -343,6 +343,7 @@ fn report_draws_the_same_pictures_again() {
         };
         assert_eq!(first.iter().filter(told).count(), 1, "a prediction in its own case");
         assert!(first.contains_key("diagnosis-mutant-no-jacobian-alpha-0.3.svg"), "{:?}", first.keys());
+        assert!(first.keys().any(|name| name.ends_with("-weights.svg")), "draws keep their weights");
         std::fs::remove_dir_all(desk.path(which).join("plots")).unwrap();
         desk.gonio(&format!("report {which} --plots {which}")).ends(0);
         let second = desk.files(&format!("{which}/plots"));

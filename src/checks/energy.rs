@@ -12,7 +12,7 @@ pub struct Energy;
 /// 1), and the cubature's error: (channel, flux, error).
 pub(super) fn flux(evidence: &Evidence, farthest: bool) -> Option<(usize, f64, f64)> {
     let fluxes = evidence.fluxes()?;
-    let each = fluxes.iter().enumerate().map(|(c, flux)| (c, flux.total(), flux.error));
+    let each = fluxes.iter().enumerate().map(|(c, flux)| (c, flux.total, flux.error));
     let size = |flux: f64| if farthest { (flux - 1.0).abs() } else { flux };
     each.max_by(|a, b| size(a.1).total_cmp(&size(b.1)))
 }

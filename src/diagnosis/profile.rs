@@ -13,7 +13,7 @@ const FEWEST: usize = 6;
 /// Places of a prediction: one a degree where nothing is narrow.
 const PLACES: f64 = 180.0;
 
-/// Cells near the plane with similar θ.
+/// Leaves near the plane with similar θ.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Serialize, Deserialize, JsonSchema)]
 pub struct Bin {
     /// The mean θ in degrees, below 0 on the side of wo; beyond 90 it is transmitted.

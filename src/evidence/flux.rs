@@ -6,19 +6,14 @@ use super::gathered::Evidence;
 /// (η_i/η_o)² of transmission in radiance mode.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct Flux {
+    /// On both: 1 of a lossless surface, less of others.
+    pub total: f64,
     /// On wo's side.
     pub reflected: f64,
     /// On the other one.
     pub transmitted: f64,
-    /// The cubature's error of their sum.
+    /// The cubature's error of the total.
     pub error: f64,
-}
-
-impl Flux {
-    /// What leaves on both sides: 1 of a lossless surface, less of others.
-    pub fn total(&self) -> f64 {
-        self.reflected + self.transmitted
-    }
 }
 
 impl Evidence {
@@ -43,10 +38,13 @@ impl Evidence {
             return None;
         }
         let of_channel = |c: usize| {
-            let mut flux =
-                Flux { reflected: 0.0, transmitted: 0.0, error: integrals.value_error[c] * through.max(1.0) };
+            let error = integrals.value_error[c] * through.max(1.0);
+            let mut flux = Flux { total: 0.0, reflected: 0.0, transmitted: 0.0, error };
             let mut add = |front_i: bool, value: f64| {
-                if front_i == front { flux.reflected += value } else { flux.transmitted += through * value }
+                let reflected = front_i == front;
+                let value = if reflected { value } else { through * value };
+                flux.total += value;
+                if reflected { flux.reflected += value } else { flux.transmitted += value }
             };
             for leaf in 0..partition.len() {
                 add(partition.leaf_cell(leaf).is_front(), integrals.value[leaf * channels + c]);

@@ -93,7 +93,7 @@ pub fn albedo(subject: &str, cases: &[&Evidence]) -> Option<String> {
     let y = 112.0 + 26.0 * channels.len() as f64;
     let small = Type::new(Anchor::Start).size(15.0).colour(SOFT_INK);
     let mut lines = vec!["marks: samples,", "± 2 standard errors", "lines: integral"];
-    if by_theta::modes(cases) {
+    if by_theta::any_importance(cases) {
         lines.push("dashed: importance");
     }
     let hidden = format!("first {} of {} channels", names.len(), channel_count);

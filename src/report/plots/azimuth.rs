@@ -80,19 +80,20 @@ fn told(case: &Evidence) -> Option<Vec<Strip>> {
 
 /// What was drawn and what pdf() says, per degree of azimuth.
 fn densities(figure: &mut Figure, found: &[Densities], angles: &AngleAxis) {
-    let each = found.iter().flat_map(|d| [d.drawn, d.pdf]);
+    let percent = |share: f64| 100.0 * share;
+    let each = found.iter().flat_map(|d| [percent(d.drawn), percent(d.pdf)]);
     let largest = each.clone().fold(0.0, f64::max);
     let least = each.filter(|d| *d > FLOOR * largest).fold(largest, f64::min);
     let y = (least.log10() - 0.1, largest.log10() + 0.1);
     let axes = Axes { from: (96.0, 80.0), to: (620.0, 290.0), x: angles.ends(), y };
     axes.ticks_y(figure, &log_ticks(y, 6));
-    axes.outline(figure, "", "share per degree");
+    axes.outline(figure, "", "% per degree");
     angles.landmarks(figure, &axes, &[(0.0, "away from wo")]);
     let place = |degrees: f64, d: f64| axes.clamped(angles.place(degrees), d.max(1e-300).log10());
-    let line: Vec<_> = found.iter().map(|d| place(d.degrees, d.pdf)).collect();
+    let line: Vec<_> = found.iter().map(|d| place(d.degrees, percent(d.pdf))).collect();
     figure.line(&line, Pen::new(INK, 2.0));
     for d in found {
-        figure.dot(place(d.degrees, d.drawn), 3.6, LINES[0]);
+        figure.dot(place(d.degrees, percent(d.drawn)), 3.6, LINES[0]);
     }
     let small = Type::new(Anchor::Start).size(15.0);
     mark(figure, (656.0, 96.0), 0, LINES[0]);

@@ -56,10 +56,9 @@ pub fn angles<T>(points: &[Vec<Point<T>>]) -> Vec<f64> {
     angles
 }
 
-/// Whether any of these cases carries importance, and any radiance.
-pub fn modes(cases: &[&Evidence]) -> bool {
-    let of = |mode| cases.iter().any(|c| c.transport == mode);
-    of(Transport::Radiance) && of(Transport::Importance)
+/// Whether any of these cases carries importance, and has a dashed line.
+pub fn any_importance(cases: &[&Evidence]) -> bool {
+    cases.iter().any(|c| c.transport == Transport::Importance)
 }
 
 /// The names of the channels that colours tell apart, and how many there are; `None` of

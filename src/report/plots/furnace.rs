@@ -19,7 +19,7 @@ fn flux(case: &Evidence, channel: usize) -> Option<Flux> {
     let flux = *case.fluxes()?.get(channel)?;
     let certainty = case.integrals.as_ref()?.certainty().unwrap_or(UNTOLD);
     let flux = Flux { error: certainty * flux.error, ..flux };
-    (flux.total().is_finite() && flux.error.is_finite()).then_some(flux)
+    (flux.total.is_finite() && flux.error.is_finite()).then_some(flux)
 }
 
 /// Which channels are drawn: as many as colours tell apart; of more, the first, the one
@@ -29,7 +29,7 @@ fn chosen(cases: &[&Evidence], count: usize) -> Vec<usize> {
         return (0..count).collect();
     }
     let fluxes: Vec<Vec<Flux>> = cases.iter().filter_map(|case| case.fluxes()).collect();
-    let of = |c: usize| fluxes.iter().filter_map(move |f| Some(f.get(c)?.total()));
+    let of = |c: usize| fluxes.iter().filter_map(move |f| Some(f.get(c)?.total));
     let least = |c: &usize| of(*c).fold(f64::INFINITY, f64::min);
     let most = |c: &usize| of(*c).fold(0.0, f64::max);
     let mut chosen = vec![0];
@@ -57,8 +57,8 @@ pub fn furnace(subject: &str, cases: &[&Evidence]) -> Option<String> {
     let both = angles.iter().any(|a| *a > 90.0);
     let right = if both { 180.0 } else { 90.0 };
     let split = all().any(|f| f.transmitted > 0.0);
-    let top = 1.08 * all().map(|f| f.total() + f.error).fold(1.0, f64::max);
-    let off = all().flat_map(|f| [f.total() - f.error - 1.0, f.total() + f.error - 1.0]);
+    let top = 1.08 * all().map(|f| f.total + f.error).fold(1.0, f64::max);
+    let off = all().flat_map(|f| [f.total - f.error - 1.0, f.total + f.error - 1.0]);
     let (low, high) = off.fold((-LEAST, LEAST), |(a, b), v| (a.min(v), b.max(v)));
     let margin = 0.1 * (high - low);
 
@@ -85,38 +85,7 @@ pub fn furnace(subject: &str, cases: &[&Evidence]) -> Option<String> {
     }
     for (series, points) in channels.iter().enumerate() {
         let colour = LINES[series];
-        for run in points.chunk_by(|a, b| a.series == b.series) {
-            // A line from the front to the back would cross what nobody measured.
-            for side in run.chunk_by(|a, b| (a.theta > 90.0) == (b.theta > 90.0)) {
-                let pen = side[0].series.pen(colour);
-                let path = |axes: &Axes, of: &dyn Fn(&Flux) -> f64| -> Vec<(f64, f64)> {
-                    side.iter().map(|p| axes.clamped(p.theta, of(&p.found))).collect()
-                };
-                figure.line(&path(&upper, &Flux::total), pen);
-                figure.line(&path(&lower, &|f| 100.0 * (f.total() - 1.0)), pen);
-                if split {
-                    let thin = Pen { width: 1.0, ..pen };
-                    figure.line(&path(&upper, &|f| f.reflected), thin);
-                    figure.line(&path(&upper, &|f| f.transmitted), thin);
-                }
-            }
-        }
-        for p in points {
-            mark(&mut figure, upper.clamped(p.theta, p.found.total()), series, colour);
-            let off = |k: f64| 100.0 * (p.found.total() + k * p.found.error - 1.0);
-            let ends = [-1.0, 1.0].map(|k| lower.clamped(p.theta, off(k)));
-            error_bar(&mut figure, ends, colour, true);
-            mark(&mut figure, lower.clamped(p.theta, off(0.0)), series, colour);
-            if split {
-                let letter = Type::new(Anchor::Middle).size(14.0).colour(colour).bold();
-                for (value, name) in [(p.found.reflected, "R"), (p.found.transmitted, "T")] {
-                    // Beside its line, and within the frame.
-                    let aside = if value < 0.1 * top { -11.0 } else { 11.0 };
-                    let (x, y) = upper.clamped(p.theta, value);
-                    figure.text((x, y + aside), name, letter);
-                }
-            }
-        }
+        draw_channel(&mut figure, points, series, (&upper, &lower), split);
         let y = 100.0 + 26.0 * series as f64;
         let name = shortened(&names[drawn[series]], 14);
         mark(&mut figure, (614.0, y), series, colour);
@@ -133,7 +102,7 @@ pub fn furnace(subject: &str, cases: &[&Evidence]) -> Option<String> {
         notes.push("R reflected,".into());
         notes.push("T transmitted (· η²)".into());
     }
-    if by_theta::modes(cases) {
+    if by_theta::any_importance(cases) {
         notes.push("dashed: importance".into());
     }
     if count > drawn.len() {
@@ -148,6 +117,50 @@ pub fn furnace(subject: &str, cases: &[&Evidence]) -> Option<String> {
         figure.text((604.0, 352.0 + 21.0 * k as f64), text, small);
     }
     Some(figure.finish())
+}
+
+/// Lines and marks of a channel in both parts; in the upper one what is reflected and
+/// transmitted too, if `split`.
+fn draw_channel(
+    figure: &mut Figure,
+    points: &[Point<Flux>],
+    series: usize,
+    (upper, lower): (&Axes, &Axes),
+    split: bool,
+) {
+    let colour = LINES[series];
+    let off = |flux: &Flux, errors: f64| 100.0 * (flux.total + errors * flux.error - 1.0);
+    // A line from the front to the back would cross what nobody measured.
+    let joined =
+        |a: &Point<Flux>, b: &Point<Flux>| a.series == b.series && (a.theta > 90.0) == (b.theta > 90.0);
+    for run in points.chunk_by(joined) {
+        let pen = run[0].series.pen(colour);
+        let mut line = |axes: &Axes, of: &dyn Fn(&Flux) -> f64, pen: Pen| {
+            let path: Vec<_> = run.iter().map(|p| axes.clamped(p.theta, of(&p.found))).collect();
+            figure.line(&path, pen);
+        };
+        line(upper, &|f| f.total, pen);
+        line(lower, &|f| off(f, 0.0), pen);
+        if split {
+            let thin = Pen { width: 1.0, ..pen };
+            line(upper, &|f| f.reflected, thin);
+            line(upper, &|f| f.transmitted, thin);
+        }
+    }
+    for Point { theta, found, .. } in points {
+        mark(figure, upper.clamped(*theta, found.total), series, colour);
+        error_bar(figure, [-1.0, 1.0].map(|k| lower.clamped(*theta, off(found, k))), colour, true);
+        mark(figure, lower.clamped(*theta, off(found, 0.0)), series, colour);
+        if split {
+            let letter = Type::new(Anchor::Middle).size(14.0).colour(colour).bold();
+            for (value, name) in [(found.reflected, "R"), (found.transmitted, "T")] {
+                let (x, y) = upper.clamped(*theta, value);
+                // Beside its line, and within the frame.
+                let aside = if y > upper.to.1 - 24.0 { -11.0 } else { 11.0 };
+                figure.text((x, y + aside), name, letter);
+            }
+        }
+    }
 }
 
 #[cfg(test)]
@@ -202,7 +215,7 @@ mod tests {
             let svg = drawn(&cases).unwrap();
             let note = svg.split("<polyline").filter(|p| p.contains("stroke-dasharray")).count();
             assert_eq!(note, 2, "a dashed line at 1 in both parts");
-            cases.iter().map(|c| flux(c, 0).unwrap().total() - 1.0).collect::<Vec<_>>()
+            cases.iter().map(|c| flux(c, 0).unwrap().total - 1.0).collect::<Vec<_>>()
         };
         assert!(heights(1.3).iter().any(|off| *off > 0.0));
         assert!(heights(0.9).iter().all(|off| *off < 0.0));

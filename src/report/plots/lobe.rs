@@ -115,7 +115,10 @@ impl Polar {
             // Beside the horizon, where no direction is marked.
             let (x, y) = self.at(-90.0, r);
             let at = (x, y + 13.0 * self.up);
-            figure.text(at, &name, Type::new(Anchor::Middle).size(14.0).colour(SOFT_INK).rim());
+            // In the middle there is no room, and at the rim the angle is told.
+            if (0.3..0.92).contains(&(r / self.radius)) {
+                figure.text(at, &name, Type::new(Anchor::Middle).size(14.0).colour(SOFT_INK).rim());
+            }
         }
         self.arc(figure, self.radius, whole, Pen::new(INK, 1.4));
         let ends = [-90.0, 90.0].map(|x| self.at(x, self.radius));

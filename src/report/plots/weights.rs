@@ -117,6 +117,26 @@ pub fn picture(evidence: &Evidence) -> Option<String> {
             figure.line(&[(px, axes.from.1), (px, axes.to.1)], pen);
         }
     };
+    let facts = facts(draws, &bars, mean, beyond);
+    for (k, (mark, text)) in facts.into_iter().enumerate() {
+        let y = 96.0 + 23.0 * k as f64;
+        if let Some((w, pen)) = mark {
+            line(&mut figure, w, pen);
+            figure.line(&[(590.0, y), (620.0, y)], pen);
+        }
+        let x = if mark.is_some() { 630.0 } else { 590.0 };
+        if !text.is_empty() {
+            figure.text((x, y), &text, Type::new(Anchor::Start).size(15.0));
+        }
+    }
+    Some(figure.finish())
+}
+
+/// A line at a weight, if it has one, and what is told beside the plot.
+type Fact = (Option<(f64, Pen)>, String);
+
+fn facts(draws: &Draws, bars: &[Bar], mean: f64, beyond: Option<f64>) -> Vec<Fact> {
+    let largest = draws.weight.largest.0;
     let pens = [Pen::new(LINES[1], 2.2), Pen::new(INK, 1.6).dashed(), Pen::new(LINES[2], 1.8).dashed()];
     let mut told = vec![
         (Some((largest, pens[0])), format!("largest: {}", three_digits(largest))),
@@ -139,7 +159,7 @@ pub fn picture(evidence: &Evidence) -> Option<String> {
         told.push((None, "of equal weight".into()));
     }
     told.push((None, String::new()));
-    let half = half_of_squares(&bars);
+    let half = half_of_squares(bars);
     told.push((None, "half of the sum of squares:".into()));
     told.push((
         None,
@@ -151,16 +171,7 @@ pub fn picture(evidence: &Evidence) -> Option<String> {
         format!("weight 0: {} ({} %)", count(draws.log_weights.zero), percent(draws.log_weights.zero)),
     ));
     told.push((None, format!("no sample: {} ({} %)", count(draws.none), percent(draws.none))));
-    for (k, (mark, text)) in told.into_iter().enumerate() {
-        let y = 96.0 + 23.0 * k as f64;
-        if let Some((w, pen)) = mark {
-            line(&mut figure, w, pen);
-            figure.line(&[(590.0, y), (620.0, y)], pen);
-        }
-        let x = if mark.is_some() { 630.0 } else { 590.0 };
-        figure.text((x, y), &text, Type::new(Anchor::Start).size(15.0));
-    }
-    Some(figure.finish())
+    told
 }
 
 #[cfg(test)]
