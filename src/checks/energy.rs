@@ -11,27 +11,8 @@ pub struct Energy;
 /// The flux that leaves, of the channel where it is largest (or farthest from
 /// 1), and the cubature's error: (channel, flux, error).
 pub(super) fn flux(evidence: &Evidence, farthest: bool) -> Option<(usize, f64, f64)> {
-    let (partition, integrals) = (evidence.partition.as_ref()?, evidence.integrals.as_ref()?);
-    let claims = &evidence.description.claims;
-    let front = evidence.wo.z > 0.0;
-    let factor = |front_i: bool| claims.flux_factor(front, front_i, evidence.scale());
-    let channels = evidence.description.channels.len();
-    let discrete = match evidence.draws.first() {
-        Some(draws) => &draws.discrete[..],
-        None if evidence.description.has.sample => return None,
-        None => &[],
-    };
-    let each = (0..channels).map(|c| {
-        let mut flux = 0.0;
-        for leaf in 0..partition.len() {
-            flux += factor(partition.leaf_cell(leaf).is_front()) * integrals.value[leaf * channels + c];
-        }
-        for d in discrete {
-            flux += factor(d.wi.z > 0.0) * d.probability * d.weight[c];
-        }
-        let error = integrals.value_error[c] * factor(!front).max(1.0);
-        (c, flux, error)
-    });
+    let fluxes = evidence.fluxes()?;
+    let each = fluxes.iter().enumerate().map(|(c, flux)| (c, flux.total, flux.error));
     let size = |flux: f64| if farthest { (flux - 1.0).abs() } else { flux };
     each.max_by(|a, b| size(a.1).total_cmp(&size(b.1)))
 }

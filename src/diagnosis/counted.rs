@@ -33,11 +33,11 @@ pub fn tell(view: &View, books: &[Textbook], claim: &mut Claim) -> Option<Profil
     }
     let off = |k: usize| tests[k].x2() / counts[k].1.draws as f64;
     let worst = (0..counts.len()).max_by(|a, b| off(*a).total_cmp(&off(*b)))?;
-    let (case, counts) = &counts[worst];
+    let case = &counts[worst].0;
     // Of a sampler's mistake the textbook's density predicts nothing.
     let of_pdf = claim.statement.contains("pdf(") && !claim.statement.contains("sample()");
     let book = books.iter().find(|b| of_pdf && !b.agrees.by_pdf());
-    Profile::of(view, &view.cases[*case], counts, book)
+    Profile::of(view, &view.cases[*case], book)
 }
 
 /// Of as many cases with different θ as a fit takes: these counts, and then further ones.

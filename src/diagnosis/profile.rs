@@ -1,19 +1,17 @@
 //! The counts over what pdf() predicts, along the plane of incidence.
 
-use super::counts::Counts;
 use super::textbook::Textbook;
 use super::view::{Seen, View};
 use crate::bsdf::Direction;
+use crate::evidence::{Evidence, Plane, Stretch, Strip};
 use schemars::JsonSchema;
 use serde::{Deserialize, Serialize};
 
-/// Leaves are near the plane whose middle is within so many degrees of it.
-const NEAR: f64 = 8.0;
+/// Fewer bins are no curve.
+const FEWEST: usize = 6;
 
-/// Degrees of a bin, and how many bins may be taken together to expect enough.
-const BIN: f64 = 3.0;
-const MOST_BINS: usize = 5;
-const ENOUGH: f64 = 16.0;
+/// Places of a prediction: one a degree where nothing is narrow.
+const PLACES: f64 = 180.0;
 
 /// Leaves near the plane with similar θ.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Serialize, Deserialize, JsonSchema)]
@@ -45,55 +43,39 @@ pub struct Profile {
 }
 
 impl Profile {
+    /// What was counted in a case, with no prediction; `None` where that is no curve.
+    pub fn counted(evidence: &Evidence) -> Option<Self> {
+        if !evidence.description.has.pdf {
+            return None;
+        }
+        let strips = Plane::strips(evidence)?;
+        let told = strips.iter().filter(|s| s.ratio().is_some());
+        let bin = |s: &Strip| Bin { theta_deg: s.degrees, observed: s.observed, expected: s.expected };
+        let bins: Vec<Bin> = told.map(bin).collect();
+        (bins.len() >= FEWEST).then_some(Self { wo: evidence.wo, bins, predicted: Vec::new() })
+    }
+
     /// Of a case; `book` has the right density where the claim predicts one.
-    pub(super) fn of(view: &View, seen: &Seen, counts: &Counts, book: Option<&Textbook>) -> Option<Self> {
-        let wo = seen.wo;
-        let (sin, cos) = wo.phi().sin_cos();
-        let side = wo.z.signum();
-        // Away from wo, and up on its side.
-        let theta = |wi: Direction| (-(wi.x * cos + wi.y * sin)).atan2(side * wi.z).to_degrees();
-        let count = (360.0 / BIN) as usize;
-        let mut fine = vec![Bin::default(); count];
-        for (leaf, observed) in counts.leaves.iter().enumerate() {
-            let own = counts.own_nodes(leaf);
-            let wi = own.middle;
-            if (wi.y * cos - wi.x * sin).abs() > NEAR.to_radians().sin() {
-                continue;
-            }
-            let (theta, expected) = (theta(wi), counts.own[leaf] * counts.draws as f64);
-            let bin = &mut fine[(((theta + 180.0) / BIN) as usize).min(count - 1)];
-            bin.theta_deg += theta * expected;
-            bin.expected += expected;
-            bin.observed += *observed as f64;
-        }
-        let mut bins = Vec::new();
-        let (mut open, mut of) = (Bin::default(), 0);
-        for bin in fine {
-            of += 1;
-            open.theta_deg += bin.theta_deg;
-            open.expected += bin.expected;
-            open.observed += bin.observed;
-            if open.expected >= ENOUGH || of == MOST_BINS {
-                if open.expected >= 1.0 {
-                    bins.push(Bin { theta_deg: open.theta_deg / open.expected, ..open });
-                }
-                (open, of) = (Bin::default(), 0);
-            }
-        }
-        let ends = (bins.first()?.theta_deg.floor() as i32, bins.last()?.theta_deg.ceil() as i32);
-        let mut predicted = Vec::new();
-        if let Some(book) = book {
-            let at = |degrees: i32| {
-                let (s, c) = f64::from(degrees).to_radians().sin_cos();
-                Direction::new(-s * cos, -s * sin, c * side)
-            };
-            let wi: Vec<Direction> = (ends.0..=ends.1).map(at).collect();
-            let told = view.pdf(wo, &wi, seen.transport);
-            let ratio = |(wi, told): (&Direction, f64)| book.pdf(wo, *wi) / told;
-            let ratios = wi.iter().zip(told).map(ratio);
-            predicted = (ends.0..=ends.1).map(f64::from).zip(ratios).collect();
-            predicted.retain(|(_, r)| r.is_finite() && *r > 0.0);
-        }
-        (bins.len() >= 6).then_some(Self { wo, bins, predicted })
+    pub(super) fn of(view: &View, seen: &Seen, book: Option<&Textbook>) -> Option<Self> {
+        let counted = Self::counted(seen.evidence)?;
+        let Some(book) = book else { return Some(counted) };
+        let plane = Plane::of(seen.wo);
+        let stretch = counted.stretch();
+        let [first, last] = [counted.bins.first()?, counted.bins.last()?].map(|b| stretch.place(b.theta_deg));
+        let step = (stretch.place(180.0) - stretch.place(-180.0)) / (2.0 * PLACES);
+        let places = (0..).map(|k| first + f64::from(k) * step).take_while(|t| *t <= last + step);
+        let degrees: Vec<f64> = places.map(|t| stretch.angle(t)).collect();
+        let wi: Vec<Direction> = degrees.iter().map(|x| plane.direction(*x)).collect();
+        let told = view.pdf(seen.wo, &wi, seen.transport);
+        let ratio = |(wi, told): (&Direction, f64)| book.pdf(seen.wo, *wi) / told;
+        let ratios = wi.iter().zip(told).map(ratio);
+        let mut predicted: Vec<(f64, f64)> = degrees.iter().copied().zip(ratios).collect();
+        predicted.retain(|(_, r)| r.is_finite() && *r > 0.0);
+        Some(Self { predicted, ..counted })
+    }
+
+    /// The axis on which its bins are seen.
+    pub fn stretch(&self) -> Stretch {
+        Stretch::of(self.bins.iter().map(|b| (b.theta_deg, b.observed + b.expected)))
     }
 }

@@ -1,5 +1,6 @@
 //! Draws from a subject's sampler, counted in the cells of a partition.
 
+use super::log_weights::{LogWeights, WeightTable};
 use super::meter::{Halt, Meter};
 use super::setup::Setup;
 use super::tally::{Place, Tally};
@@ -157,6 +158,9 @@ pub struct Draws {
     pub mis_cosine: Sums,
     /// Pairs of successive samples in [`SERIAL`]² coarse cells.
     pub serial: Vec<u64>,
+    /// Weights by size, of the first attempt.
+    #[serde(default, skip_serializing_if = "LogWeights::is_empty")]
+    pub log_weights: LogWeights,
 }
 
 /// The cosine distribution that MIS is tried with, over the sides where light
@@ -234,6 +238,7 @@ impl Draws {
             mis_sampler: Sums::new(channels),
             mis_cosine: Sums::new(channels),
             serial: vec![0; SERIAL * SERIAL],
+            log_weights: LogWeights::default(),
         }
     }
 
@@ -258,13 +263,19 @@ impl Draws {
         samples: u64,
     ) -> Result<(), Halt> {
         let mut scratch = Scratch::default();
+        let mut weights = (self.attempt == 0).then(WeightTable::new);
+        let none = self.none;
         let serial = serial_cells(partition);
         let cell = |(serial, pdf): (u8, &f64)| LeafCell { serial, empty: *pdf == 0.0 };
         let cells: Vec<LeafCell> = serial.into_iter().zip(pdf_of_leaf).map(cell).collect();
-        while self.samples < samples {
-            self.block(meter, setup, partition, &cells, &mut scratch)?;
+        let mut drawn = Ok(());
+        while self.samples < samples && drawn.is_ok() {
+            drawn = self.block(meter, setup, partition, &cells, &mut scratch, weights.as_mut());
         }
-        Ok(())
+        if let Some(weights) = weights {
+            weights.add_to(&mut self.log_weights, self.none - none);
+        }
+        drawn
     }
 
     fn block(
@@ -274,6 +285,7 @@ impl Draws {
         partition: &Partition,
         cells: &[LeafCell],
         scratch: &mut Scratch,
+        weights: Option<&mut WeightTable>,
     ) -> Result<(), Halt> {
         let stage = if self.attempt == 0 { "draws" } else { "confirmation" };
         let mut stream = setup.key.with("stage", stage).block(self.samples / BLOCK);
@@ -323,6 +335,9 @@ impl Draws {
             self.serial[usize::from(*before) * SERIAL + usize::from(*after)] += 1;
         }
         let channels = samples.channels;
+        if let Some(weights) = weights {
+            weights.look(&samples.weight, channels);
+        }
         let weight = Sums::of(&samples.weight, channels, |_| 1.0);
         if weight.largest.0 > self.weight.largest.0 {
             let heaviest = samples.weight.iter().position(|w| w.min(LARGEST) == weight.largest.0);
