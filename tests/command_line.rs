@@ -454,12 +454,20 @@ fn report_draws_the_same_pictures_again() {
     let subjects = "[[subject]]\nuse = \"lambert\"\nlabel = \"a wall\"\nreflectance = [0.2, 0.8]\n\
         [[subject]]\nuse = \"torrance-sparrow\"\nalpha = 0.3\n\
         [[subject]]\nuse = \"lambert\"\nlabel = \"too bright\"\nreflectance = 0.5\nclaims = { lossless = true }\n\
-        [[subject]]\nuse = \"dielectric\"\n";
+        [[subject]]\nuse = \"dielectric\"\n\
+        [[subject]]\nuse = \"mutant-no-jacobian\"\nalpha = 0.3\n";
     desk.write("s.toml", &suite(subjects).replace("theta = 30", "theta = [0, 75]"));
     for which in ["all", "auto"] {
         desk.gonio(&format!("run s.toml --plots {which} -o {which}")).ends(1);
         let first = desk.files(&format!("{which}/plots"));
         assert!(first.len() > 5, "{:?}", first.keys());
+        // Some of its cells were cut once more, and the diagnosis predicts a line.
+        let told = |(name, bytes): &(&String, &Vec<u8>)| {
+            name.ends_with("-plane.svg") && String::from_utf8_lossy(bytes).contains("what the cause")
+        };
+        assert_eq!(first.iter().filter(told).count(), 1, "a prediction in its own case");
+        assert!(first.contains_key("diagnosis-mutant-no-jacobian-alpha-0.3.svg"), "{:?}", first.keys());
+        assert!(first.keys().any(|name| name.ends_with("-weights.svg")), "draws keep their weights");
         std::fs::remove_dir_all(desk.path(which).join("plots")).unwrap();
         desk.gonio(&format!("report {which} --plots {which}")).ends(0);
         let second = desk.files(&format!("{which}/plots"));

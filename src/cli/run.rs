@@ -194,8 +194,10 @@ fn run(
         }
     });
     progress.finish();
+    let diagnosed = diagnose_all(&results, &request.explanations, &options);
+    let mut diagnoses = Diagnosis::all(&results, diagnosed);
     let plots = match (&folder, request.plots.which()) {
-        (Some(folder), Some(which)) => draw_results(folder, &results, which),
+        (Some(folder), Some(which)) => draw_results(folder, &results, &diagnoses, which),
         _ => Ok(BTreeMap::new()),
     };
     let (plots, unwritten) = match plots {
@@ -208,8 +210,6 @@ fn run(
         evidence: &|case| folder.as_ref().and_then(|_| evidence_of(case)),
         plot: &|case| plots.get(&case.index).cloned(),
     };
-    let diagnosed = diagnose_all(&results, &request.explanations, &options);
-    let mut diagnoses = Diagnosis::all(&results, diagnosed);
     let drawn = match (&folder, request.plots.which()) {
         (Some(folder), Some(_)) => draw_diagnoses(folder, &mut diagnoses),
         _ => Ok(()),

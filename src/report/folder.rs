@@ -1,9 +1,10 @@
 //! A report as a folder: report.json, evidence and pictures.
 
 use super::json::{CheckResult, Diagnosis, Report};
-use super::plots::{Pictured, Which, draw, file_name, ratio_picture};
+use super::plots::{Pictured, Which, diagnosis_picture, draw, file_name};
 use super::saved::{FileError, evidence_path, read_evidence, write_whole};
 use crate::checks::{Verdict, level_p_values};
+use crate::diagnosis::Profile;
 use crate::engine::Results;
 use crate::evidence::Evidence;
 use std::collections::{BTreeMap, BTreeSet};
@@ -19,10 +20,17 @@ pub fn write_report(folder: &Path, report: &Report) -> Result<(), FileError> {
     write_whole(&folder.join(REPORT), text.as_bytes())
 }
 
-/// Draws the pictures of results; the path of each pictured case by its number.
+/// What was counted and predicted for the diagnosis of a subject.
+fn profile_of<'a>(diagnoses: &'a [Diagnosis], subject: &str) -> Option<&'a Profile> {
+    diagnoses.iter().find(|d| d.subject == subject)?.profile.as_ref()
+}
+
+/// Draws the pictures of results, with what diagnoses predict; the path of each pictured
+/// case by its number.
 pub fn draw_results(
     folder: &Path,
     results: &Results,
+    diagnoses: &[Diagnosis],
     which: Which,
 ) -> Result<BTreeMap<usize, String>, FileError> {
     let mut cases = Vec::new();
@@ -33,21 +41,31 @@ pub fn draw_results(
         let fit = case.findings.iter().find(|f| f.check == "goodness-of-fit");
         let root_d = fit.and_then(|f| f.outcome.effect.as_ref()).map(|e| e.value.0);
         let suspicious = case.findings.iter().any(|f| is_suspicious(f.outcome.verdict));
-        cases.push(Pictured { index: case.index, group: &case.case.group, evidence, suspicious, root_d });
+        let (group, diagnosed) = (&case.case.group, profile_of(diagnoses, &case.case.spelling));
+        cases.push(Pictured { index: case.index, group, evidence, suspicious, root_d, diagnosed });
     }
     draw(folder, &cases, &p_values, which)
 }
 
 /// Draws the pictures of diagnoses, and tells each its path.
 pub fn draw_diagnoses(folder: &Path, diagnoses: &mut [Diagnosis]) -> Result<(), FileError> {
-    let mut names = BTreeSet::new();
-    for found in diagnoses {
-        let Some(profile) = &found.profile else { continue };
-        let path = format!("plots/diagnosis-{}.svg", file_name(&found.subject, &mut names));
-        write_whole(&folder.join(&path), ratio_picture(&found.subject, profile).as_bytes())?;
-        found.plot = Some(path);
+    let paths = draw_profiles(folder, diagnoses)?;
+    for (found, path) in diagnoses.iter_mut().zip(paths) {
+        found.plot = path;
     }
     Ok(())
+}
+
+/// Draws the profiles of diagnoses; where each is that has one.
+fn draw_profiles(folder: &Path, diagnoses: &[Diagnosis]) -> Result<Vec<Option<String>>, FileError> {
+    let mut names = BTreeSet::new();
+    let mut draw_one = |found: &Diagnosis| {
+        let Some(profile) = &found.profile else { return Ok(None) };
+        let path = format!("plots/diagnosis-{}.svg", file_name(&found.subject, &mut names));
+        write_whole(&folder.join(&path), diagnosis_picture(&found.subject, profile).as_bytes())?;
+        Ok(Some(path))
+    };
+    diagnoses.iter().map(&mut draw_one).collect()
 }
 
 /// Draws the pictures of a saved report again from its evidence; how many
@@ -77,9 +95,11 @@ pub fn redraw(folder: &Path, report: &Report, which: Which) -> Result<usize, Fil
                 evidence,
                 suspicious: rows.iter().any(|r| is_suspicious(r.verdict)),
                 root_d: fit.and_then(|r| r.effect.as_ref()).map(|e| e.value.0),
+                diagnosed: profile_of(&report.diagnoses, &rows[0].subject.name),
             }
         })
         .collect();
+    draw_profiles(folder, &report.diagnoses)?;
     Ok(draw(folder, &cases, &p_values, which)?.len())
 }
 

@@ -17,8 +17,9 @@ pub use json::{
     Summary, WaiverRow, WaiverState, WoAngles,
 };
 pub use plots::{
-    Caption, Histogram, Interval, IntervalPlot, IntervalRow, Line, LinePlot, Mark, MatrixPlot, MatrixRow,
-    Pictured, Which, albedo_curve, disc_picture, draw, p_value_histogram, reciprocity_picture,
+    Caption, Histogram, Interval, IntervalPlot, IntervalRow, Kind, Line, LinePlot, Mark, MatrixPlot,
+    MatrixRow, Picture, Pictured, Which, albedo_curve, disc_picture, draw, p_value_histogram,
+    pictures_of_case, pictures_of_subject, reciprocity_picture,
 };
 pub use saved::{FileError, evidence_path, read_evidence, write_evidence, write_whole};
 pub use schema::{schema, schema_text};

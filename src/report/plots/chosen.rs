@@ -1,9 +1,11 @@
 //! Which pictures a report has, and where they are.
 
 use super::super::saved::{FileError, write_whole};
-use super::disc::{self, Caption};
-use super::{curves, reciprocity_map};
+use super::histogram;
+use super::pictures::{of_case, of_subject};
+use crate::diagnosis::Profile;
 use crate::evidence::Evidence;
+use rayon::prelude::*;
 use std::collections::{BTreeMap, BTreeSet};
 use std::path::Path;
 
@@ -21,6 +23,9 @@ pub struct Pictured<'a> {
     pub suspicious: bool,
     /// √D of goodness-of-fit.
     pub root_d: Option<f64>,
+    /// What was counted and predicted for the diagnosis of its subject, in this case or
+    /// in another one.
+    pub diagnosed: Option<&'a Profile>,
 }
 
 /// Which cases have pictures of their own.
@@ -41,38 +46,36 @@ pub fn draw(
     p_values: &[f64],
     which: Which,
 ) -> Result<BTreeMap<usize, String>, FileError> {
-    let mut paths = BTreeMap::new();
-    for case in chosen(cases, which) {
-        let caption = Caption { root_d: case.root_d };
-        let discs = disc::picture(case.evidence, caption);
-        let map = reciprocity_map::picture(case.evidence);
-        // The discs are a case's picture; the map is where there are none.
-        for (name, svg) in [(discs_path(case.index), discs), (map_path(case.index), map)] {
-            if let Some(svg) = svg {
-                write_whole(&report_dir.join(&name), svg.as_bytes())?;
-                paths.entry(case.index).or_insert(name);
-            }
+    let draw_case = |case: &&Pictured| {
+        let mut first = None;
+        for picture in of_case(case, cases) {
+            let path = picture.kind.of_case(case.index);
+            write_whole(&report_dir.join(&path), picture.svg.as_bytes())?;
+            // The discs are a case's picture; where there are none, the next kind is.
+            first.get_or_insert(path);
         }
-    }
+        Ok(first.map(|path| (case.index, path)))
+    };
+    let drawn: Vec<Option<(usize, String)>> =
+        chosen(cases, which).par_iter().map(draw_case).collect::<Result<_, FileError>>()?;
     let mut names = BTreeSet::new();
-    for (group, of_group) in by_subject(cases) {
-        if let Some(svg) = curves::albedo(group.1, &of_group) {
-            let name = file_name(&format!("{} {}", group.0, group.1), &mut names);
-            write_whole(&report_dir.join(format!("plots/albedo-{name}.svg")), svg.as_bytes())?;
+    for ((group, subject), of_group) in by_subject(cases) {
+        let pictures = of_subject(subject, &of_group);
+        if pictures.is_empty() {
+            continue;
+        }
+        // A row is mostly named as its subjects' model is.
+        let text = if subject.starts_with(group) { subject.into() } else { format!("{group} {subject}") };
+        let name = file_name(&text, &mut names);
+        for picture in pictures {
+            let path = format!("plots/{}-{name}.svg", picture.kind.word());
+            write_whole(&report_dir.join(path), picture.svg.as_bytes())?;
         }
     }
-    if let Some(svg) = curves::p_values(p_values) {
+    if let Some(svg) = histogram::p_values(p_values) {
         write_whole(&report_dir.join("plots/p-values.svg"), svg.as_bytes())?;
     }
-    Ok(paths)
-}
-
-fn discs_path(index: usize) -> String {
-    format!("plots/case-{index:04}.svg")
-}
-
-fn map_path(index: usize) -> String {
-    format!("plots/case-{index:04}-reciprocity.svg")
+    Ok(drawn.into_iter().flatten().collect())
 }
 
 /// The cases that are drawn, in their order.
@@ -102,12 +105,7 @@ fn by_subject<'a>(cases: &[Pictured<'a>]) -> BTreeMap<(&'a str, &'a str), Vec<&'
 /// A name that any file system takes, and that no other has.
 pub fn file_name(text: &str, taken: &mut BTreeSet<String>) -> String {
     let words: Vec<&str> = text.split(|c: char| !c.is_ascii_alphanumeric() && c != '.').collect();
-    // A group is often named as its only subject is.
-    let mut kept: Vec<&str> = words.into_iter().filter(|w| !w.trim_matches('.').is_empty()).collect();
-    let half = kept.len() / 2;
-    if kept.len().is_multiple_of(2) && kept[..half] == kept[half..] {
-        kept.truncate(half);
-    }
+    let kept: Vec<&str> = words.into_iter().filter(|w| !w.trim_matches('.').is_empty()).collect();
     let base: String = kept.join("-").to_ascii_lowercase().chars().take(80).collect();
     let mut name = base.clone();
     for k in 2.. {
@@ -143,6 +141,7 @@ mod tests {
                 evidence,
                 suspicious: index == 2,
                 root_d: None,
+                diagnosed: None,
             })
             .collect()
     }
@@ -163,9 +162,16 @@ mod tests {
         assert_eq!(paths[&2], "plots/case-0002.svg");
         let expected = [
             "albedo-ggx-alpha-0.5.svg",
+            "case-0001-azimuth.svg",
+            "case-0001-lobe.svg",
+            "case-0001-plane.svg",
             "case-0001-reciprocity.svg",
             "case-0001.svg",
+            "case-0002-azimuth.svg",
+            "case-0002-lobe.svg",
+            "case-0002-plane.svg",
             "case-0002.svg",
+            "furnace-ggx-alpha-0.5.svg",
             "p-values.svg",
         ];
         assert_eq!(files(folder.path()), expected);
@@ -192,7 +198,7 @@ mod tests {
     fn file_names_are_tame_and_distinct() {
         let mut taken = BTreeSet::new();
         let mut name = |text| file_name(text, &mut taken);
-        assert_eq!(name("../ggx:alpha=0.5 ../ggx:alpha=0.5"), "ggx-alpha-0.5");
+        assert_eq!(name("../ggx:alpha=0.5"), "ggx-alpha-0.5");
         assert_eq!(name("ggx:alpha=0.5"), "ggx-alpha-0.5-2");
         assert_eq!(name("/*"), "");
     }

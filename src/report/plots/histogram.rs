@@ -1,9 +1,13 @@
 //! A histogram of p-values, which are uniform where all is right.
 
+use super::albedo::WIDTH;
 use super::axes::Axes;
 use super::colours::{BAND, INK, LINES, SOFT_INK};
-use super::curves::WIDTH;
 use super::figure::{Anchor, Figure, Pen, Type};
+use crate::statistics::uniformity::kolmogorov_smirnov;
+
+/// Bins of the histogram of a run's p-values.
+const BINS: usize = 20;
 
 /// Counts of p-values in equal bins from 0 to 1.
 #[derive(Clone, Debug, PartialEq)]
@@ -69,4 +73,53 @@ impl Histogram {
 
 fn probability(p: f64) -> String {
     if p >= 1e-3 { format!("{p:.3}") } else { format!("{p:.0e}").replace('-', "−") }
+}
+
+/// Histogram of p-values, which are uniform where every subject is right.
+/// `None` where there is none.
+pub fn p_values(values: &[f64]) -> Option<String> {
+    let mut values: Vec<f64> = values.iter().copied().filter(|p| (0.0..=1.0).contains(p)).collect();
+    if values.is_empty() {
+        return None;
+    }
+    let mut counts = vec![0u64; BINS];
+    for p in &values {
+        counts[((p * BINS as f64) as usize).min(BINS - 1)] += 1;
+    }
+    let (distance, p) = kolmogorov_smirnov(&mut values);
+    let histogram = Histogram {
+        title: "p-values of the run".into(),
+        name_y: "cases".into(),
+        distance,
+        p,
+        counts,
+        deviations: 2.0,
+        band: "± 2 σ".into(),
+    };
+    Some(histogram.svg())
+}
+
+#[cfg(test)]
+mod tests {
+    use super::super::figure::{MOST_BYTES, tests::assert_well_formed};
+    use super::*;
+    use crate::statistics::streams::StreamKey;
+
+    #[test]
+    fn is_small_well_formed_and_alike() {
+        let draw = || {
+            let mut stream = StreamKey::new(5).block(0);
+            p_values(&(0..600).map(|_| stream.next_f64()).collect::<Vec<_>>()).unwrap()
+        };
+        let svg = draw();
+        assert_well_formed(&svg);
+        assert!(svg.len() < MOST_BYTES / 3, "{} bytes", svg.len());
+        assert_eq!(svg, draw());
+    }
+
+    #[test]
+    fn no_value_is_no_histogram() {
+        assert_eq!(p_values(&[f64::NAN]), None);
+        assert!(p_values(&[0.0, 1.0]).is_some());
+    }
 }

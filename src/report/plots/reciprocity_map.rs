@@ -1,6 +1,6 @@
 //! Where exchanging wo and wi changes the value, and which way.
 
-use super::colours::{INK, Rgb, diverging};
+use super::colours::{INK, NOTHING, Rgb, diverging};
 use super::disc::{bar, given};
 use super::disc_frame::{Disc, Window, cross, ring};
 use super::figure::{Anchor, Figure, Pen, Type, shortened};
@@ -62,6 +62,8 @@ pub fn picture(evidence: &Evidence) -> Option<String> {
     for (k, front) in sides.iter().enumerate() {
         let at = (LEFT + APART * k as f64, 276.0);
         let disc = Disc { chart, front: *front, window: Window::WHOLE, at, radius: RADIUS };
+        // Where values are equal, dots are nearly white.
+        figure.dot(at, RADIUS, NOTHING);
         for (d, signed) in dots {
             if let Some(place) = disc.direction(*d) {
                 let colour = colour(*signed, scale);

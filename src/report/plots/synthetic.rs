@@ -77,13 +77,24 @@ fn masses(lobe: &Lobe, middle: Point, partition: &Partition) -> Vec<f64> {
 /// Evidence at θo, φo (degrees) of a sampler that draws `sampled` and a pdf
 /// that says `claimed`.
 pub fn evidence(subject: &str, theta: f64, phi: f64, claimed: Lobe, sampled: Lobe) -> Evidence {
+    measured(subject, (theta, phi), claimed, sampled, 0.0)
+}
+
+/// Evidence of a sampler whose lobe lies `turn` degrees of azimuth beside the one that
+/// pdf says.
+pub fn turned(subject: &str, theta: f64, phi: f64, lobe: Lobe, turn: f64) -> Evidence {
+    measured(subject, (theta, phi), lobe, lobe, turn)
+}
+
+fn measured(subject: &str, (theta, phi): (f64, f64), claimed: Lobe, sampled: Lobe, turn: f64) -> Evidence {
     let wo = Direction::from_angles(theta.to_radians(), phi.to_radians());
     let chart = Chart::new(wo.phi());
     let middle = chart.to_disc(wo.mirrored());
+    let beside = chart.to_disc(wo.mirrored().rotated(turn.to_radians()));
     let key = StreamKey::new(7).with("subject", subject);
     let draw = |lobe: &Lobe, n: usize, block: u64| -> Vec<Point> {
         let mut stream = key.block(block);
-        (0..n).map(|_| chart.to_point(lobe.draw(middle, &chart, &mut stream))).collect()
+        (0..n).map(|_| chart.to_point(lobe.draw(beside, &chart, &mut stream))).collect()
     };
     let partition = Partition::build(chart, draw(&sampled, 1 << 15, 0), 1024);
     let pdf = masses(&claimed, middle, &partition);
