@@ -19,6 +19,9 @@ pub enum Draws {
     Within(Duration),
 }
 
+/// Why a case is not run; the same where a later run follows the allocation.
+const LATE: &str = "time was up before this case";
+
 /// Draws of a case within a budget: the first look, and what takes hours.
 const LEAST: f64 = (1u64 << 14) as f64;
 const MOST: f64 = (1u64 << 28) as f64;
@@ -116,11 +119,11 @@ impl Allotment {
                 let limit = case.settings.time_limit.as_secs_f64();
                 self.state()
                     .deal(index, self.costs[index], limit, self.start.elapsed().as_secs_f64())
-                    .ok_or("time was up before this case")?
+                    .ok_or(LATE)?
             }
         };
         if draws == 0 {
-            return Err("it was not begun in the run whose allocation this one follows");
+            return Err(LATE);
         }
         let mut case = Case::clone(case);
         case.settings.samples = draws;
