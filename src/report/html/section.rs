@@ -130,7 +130,7 @@ pub fn section<'a>(
 ) -> Section<'a> {
     let views = subject.checks.iter().map(|check| view(subject, check));
     let (mut telling, others): (Vec<CheckView>, Vec<CheckView>) = views.partition(|v| is_telling(v.verdict));
-    telling.sort_by(|a, b| b.verdict.cmp(&a.verdict));
+    telling.sort_by_key(|check| std::cmp::Reverse(check.verdict));
     let of_subject = |c: &&Changed| c.is_of(subject.id);
     let claims = serde_json::to_value(subject.id.claims).ok();
     let claims = claims.as_ref().and_then(|c| c.as_object()).into_iter().flatten();
