@@ -40,17 +40,19 @@ impl Evidence {
         let of_channel = |c: usize| {
             let error = integrals.value_error[c] * through.max(1.0);
             let mut flux = Flux { total: 0.0, reflected: 0.0, transmitted: 0.0, error };
+            let factor = |front_i: bool| if front_i == front { 1.0 } else { through };
             let mut add = |front_i: bool, value: f64| {
-                let reflected = front_i == front;
-                let value = if reflected { value } else { through * value };
                 flux.total += value;
-                if reflected { flux.reflected += value } else { flux.transmitted += value }
+                let side = if front_i == front { &mut flux.reflected } else { &mut flux.transmitted };
+                *side += value;
             };
             for leaf in 0..partition.len() {
-                add(partition.leaf_cell(leaf).is_front(), integrals.value[leaf * channels + c]);
+                let front_i = partition.leaf_cell(leaf).is_front();
+                add(front_i, factor(front_i) * integrals.value[leaf * channels + c]);
             }
             for d in discrete {
-                add(d.wi.z > 0.0, d.probability * d.weight[c]);
+                let front_i = d.wi.z > 0.0;
+                add(front_i, factor(front_i) * d.probability * d.weight[c]);
             }
             flux
         };
