@@ -5,9 +5,10 @@ use base64::engine::general_purpose::STANDARD;
 use flate2::{Compression, GzBuilder};
 use std::io::Write;
 
-/// gzip in base64. Equal bytes give equal text.
+/// gzip in base64. Equal bytes give equal text. Fast: a page has thousands of parts, and
+/// a tenth more bytes cost less than four times the time.
 pub fn packed(bytes: &[u8]) -> String {
-    let mut packer = GzBuilder::new().mtime(0).write(Vec::new(), Compression::default());
+    let mut packer = GzBuilder::new().mtime(0).write(Vec::new(), Compression::fast());
     packer.write_all(bytes).expect("memory takes every byte");
     STANDARD.encode(packer.finish().expect("memory takes every byte"))
 }

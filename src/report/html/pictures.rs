@@ -18,8 +18,9 @@ pub fn of_diagnosis(subject: &Subject) -> Option<String> {
     Some(inline(diagnosis_picture(&found.subject, found.profile.as_ref()?)))
 }
 
-/// What is drawn of the cases that were read, by their number: of the first everything,
-/// of pairs the case in which they are worst, and curves over all if `all` were read.
+/// What is drawn of the cases that were read, by their number: of the first what its
+/// section has no better picture of, of pairs the case in which they are worst if they
+/// are wrong, and curves over all if `all` were read.
 pub fn of_cases(subject: &Subject, read: &[(usize, Evidence)], all: bool) -> Vec<Picture> {
     let profile = subject.found.and_then(|found| found.profile.as_ref());
     let cases: Vec<Pictured> = read
@@ -33,27 +34,22 @@ pub fn of_cases(subject: &Subject, read: &[(usize, Evidence)], all: bool) -> Vec
             diagnosed: profile,
         })
         .collect();
-    let of = |number: Option<usize>| {
+    let of = |number: Option<usize>, wanted: &dyn Fn(Kind) -> bool| {
         let case = cases.iter().find(|case| Some(case.index) == number);
-        case.map_or(Vec::new(), |case| pictures_of_case(case, &cases))
+        case.map_or(Vec::new(), |case| pictures_of_case(case, &cases, wanted))
     };
     let asymmetric = subject.checks.iter().find(|c| c.id == "reciprocity" && is_telling(c.verdict));
     let path = asymmetric.and_then(|check| check.results[0].evidence.as_deref());
     let worst_pairs = path.and_then(|path| subject.cases.iter().position(|c| c.evidence == Some(path)));
-    let first = subject.first_case();
-    // The picture of the diagnosis has it already.
-    let told = |kind| kind == Kind::Plane && profile.is_some();
-    let mut drawn = of(first);
-    // What passes is packed, and is not read without the script that draws discs.
-    let packed = !is_telling(subject.verdict);
-    drawn.retain(|picture| {
-        !told(picture.kind)
-            && (picture.kind != Kind::Reciprocity || worst_pairs.is_none())
-            && (picture.kind != Kind::Discs || !packed)
+    let mut drawn = of(subject.first_case(), &|kind| match kind {
+        // What passes is unpacked by the script that draws them.
+        Kind::Discs => is_telling(subject.verdict),
+        // The picture of the diagnosis has it already.
+        Kind::Plane => profile.is_none(),
+        Kind::Reciprocity => false,
+        _ => true,
     });
-    if worst_pairs.is_some() {
-        drawn.extend(of(worst_pairs).into_iter().filter(|picture| picture.kind == Kind::Reciprocity));
-    }
+    drawn.extend(of(worst_pairs, &|kind| kind == Kind::Reciprocity));
     if all && read.len() > 1 {
         let every: Vec<&Evidence> = read.iter().map(|(_, e)| e).collect();
         drawn.extend(pictures_of_subject(&subject.id.name, &every));

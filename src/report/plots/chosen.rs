@@ -48,7 +48,7 @@ pub fn draw(
 ) -> Result<BTreeMap<usize, String>, FileError> {
     let draw_case = |case: &&Pictured| {
         let mut first = None;
-        for picture in of_case(case, cases) {
+        for picture in of_case(case, cases, |_| true) {
             let path = picture.kind.of_case(case.index);
             write_whole(&report_dir.join(&path), picture.svg.as_bytes())?;
             // The discs are a case's picture; where there are none, the next kind is.

@@ -76,15 +76,13 @@ pub struct Picture {
     pub svg: String,
 }
 
-fn all<const N: usize>(drawn: [(Kind, Option<String>); N]) -> Vec<Picture> {
-    let picture =
-        |(kind, svg): (Kind, Option<String>)| Some(Picture { kind, title: kind.title(), svg: svg? });
-    drawn.into_iter().filter_map(picture).collect()
+fn picture(kind: Kind, svg: Option<String>) -> Option<Picture> {
+    Some(Picture { kind, title: kind.title(), svg: svg? })
 }
 
-/// The pictures of a case, of which `cases` are all: its azimuths are drawn beside those
-/// of its neighbours.
-pub fn of_case(case: &Pictured, cases: &[Pictured]) -> Vec<Picture> {
+/// The pictures of a case that are `wanted`. `cases` are all of its subject and others:
+/// its azimuths are drawn beside those of its neighbours.
+pub fn of_case(case: &Pictured, cases: &[Pictured], wanted: impl Fn(Kind) -> bool) -> Vec<Picture> {
     let evidence = case.evidence;
     let theta = |e: &Evidence| e.wo.theta().to_degrees();
     let beside = |other: &&Pictured| {
@@ -93,20 +91,30 @@ pub fn of_case(case: &Pictured, cases: &[Pictured]) -> Vec<Picture> {
             && (other.group, &e.subject, e.transport) == (case.group, &evidence.subject, evidence.transport)
             && (theta(e) - theta(evidence)).abs() < 1e-6
     };
-    let others: Vec<&Evidence> = cases.iter().filter(beside).map(|c| c.evidence).collect();
-    all([
-        (Kind::Discs, disc::picture(evidence, Caption { root_d: case.root_d })),
-        (Kind::Plane, plane::picture(evidence, case.diagnosed)),
-        (Kind::Azimuth, azimuth::picture(evidence, &others)),
-        (Kind::Lobe, lobe::picture(evidence)),
-        (Kind::Weights, weights::picture(evidence)),
-        (Kind::Reciprocity, reciprocity_map::picture(evidence)),
-    ])
+    let draw = |kind| match kind {
+        Kind::Discs => disc::picture(evidence, Caption { root_d: case.root_d }),
+        Kind::Plane => plane::picture(evidence, case.diagnosed),
+        Kind::Azimuth => {
+            let others: Vec<&Evidence> = cases.iter().filter(beside).map(|c| c.evidence).collect();
+            azimuth::picture(evidence, &others)
+        }
+        Kind::Lobe => lobe::picture(evidence),
+        Kind::Weights => weights::picture(evidence),
+        Kind::Reciprocity => reciprocity_map::picture(evidence),
+        Kind::Albedo | Kind::Furnace => None,
+    };
+    OF_CASE.into_iter().filter(|kind| wanted(*kind)).filter_map(|kind| picture(kind, draw(kind))).collect()
 }
+
+/// What a case can be shown by, in the order of pages.
+const OF_CASE: [Kind; 6] =
+    [Kind::Discs, Kind::Plane, Kind::Azimuth, Kind::Lobe, Kind::Weights, Kind::Reciprocity];
 
 /// The pictures of a subject's cases together.
 pub fn of_subject(subject: &str, cases: &[&Evidence]) -> Vec<Picture> {
-    all([(Kind::Albedo, albedo::albedo(subject, cases)), (Kind::Furnace, furnace::furnace(subject, cases))])
+    let drawn =
+        [(Kind::Albedo, albedo::albedo(subject, cases)), (Kind::Furnace, furnace::furnace(subject, cases))];
+    drawn.into_iter().filter_map(|(kind, svg)| picture(kind, svg)).collect()
 }
 
 #[cfg(test)]
@@ -131,7 +139,7 @@ mod tests {
                 diagnosed: None,
             })
             .collect();
-        let found = of_case(&cases[0], &cases);
+        let found = of_case(&cases[0], &cases, |_| true);
         let kinds: Vec<Kind> = found.iter().map(|p| p.kind).collect();
         assert_eq!(kinds, [Kind::Discs, Kind::Plane, Kind::Azimuth, Kind::Lobe, Kind::Reciprocity]);
         let azimuth = &found[2].svg;
