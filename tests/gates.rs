@@ -116,6 +116,11 @@ fn a_waiver_covers_what_it_names_and_no_more() {
     assert_eq!(state, "exceeded", "{}", done.ends(1).says("larger than 5.00 %").err);
     let (done, state) = run(waived("", "").replace("part=left'", "part=right'"));
     assert_eq!(state, "unused", "{}", done.ends(1).says("delete it").err);
+    // Of a check that is not run nothing can be said; of a subject that is not there it can.
+    desk.write("s.toml", &waived("", "")).gonio("run s.toml -o out --check reciprocity").ends(0);
+    assert!(desk.report("out").get("waivers").is_none());
+    let (_, state) = run(waived("", "").replace("part=left'", "part=lefft'"));
+    assert_eq!(state, "unused");
     desk.write("s.toml", &waived(", until = '31.12.2099'", ""))
         .gonio("run s.toml")
         .ends(2)

@@ -10,6 +10,7 @@ use crate::comparison::Comparison;
 use crate::engine::{CaseResult, Finding, Results};
 use crate::evidence::{Figure, Meter};
 use crate::suite::{Case, Plan, digests};
+use std::collections::BTreeMap;
 use std::f64::consts::LN_10;
 use std::sync::Arc;
 
@@ -58,6 +59,7 @@ impl Report {
         for case in &results.cases {
             of_case.insert(case.index, case.findings.iter().map(|f| row(case, f, files)).collect());
         }
+        let waivers = waivers(plan, &of_case);
         let rows: Vec<CheckResult> = of_case.into_values().flatten().collect();
         let allocation =
             results.allocation.clone().map(|samples| Allocation { time_s: files.time_s, samples });
@@ -73,7 +75,7 @@ impl Report {
             partial: results.partial.clone(),
             summary: Summary::count(&rows),
             subjects: subjects(plan, allocation.is_none(), &carried),
-            waivers: waivers(results),
+            waivers,
             allocation,
             comparison: None,
             results: rows,
@@ -113,19 +115,21 @@ fn subjects(plan: &Plan, samples: bool, carried: &Carried) -> Vec<SubjectEntry> 
     plan.cases.iter().filter_map(entry).collect()
 }
 
-/// What became of the waivers of the cases that were run.
-fn waivers(results: &Results) -> Vec<WaiverRow> {
-    let mut rows: Vec<WaiverRow> = Vec::new();
-    for case in &results.cases {
-        for waiver in &case.case.waivers {
-            let subject = waiver.subject.as_ref().unwrap_or(&case.case.group);
+/// What became of the waivers of a plan, by the results of its cases. Those of checks that
+/// were not run are left out: nothing can be said of them.
+fn waivers(plan: &Plan, of_case: &BTreeMap<usize, Vec<CheckResult>>) -> Vec<WaiverRow> {
+    let mut rows: Vec<(WaiverRow, bool)> = Vec::new();
+    for (index, results) in of_case {
+        let case = &plan.cases[*index];
+        for waiver in &case.waivers {
+            let subject = waiver.subject.as_ref().unwrap_or(&case.group);
             let until = waiver.until.map(|day| day.to_string());
-            let same = |row: &WaiverRow| {
+            let same = |(row, _): &(WaiverRow, bool)| {
                 (&row.check, &row.subject, &row.because, &row.until, row.at_most)
                     == (&waiver.check, subject, &waiver.because, &until, waiver.at_most)
             };
             let at = rows.iter().position(same).unwrap_or_else(|| {
-                rows.push(WaiverRow {
+                let row = WaiverRow {
                     check: waiver.check.clone(),
                     subject: subject.clone(),
                     because: waiver.because.clone(),
@@ -133,16 +137,15 @@ fn waivers(results: &Results) -> Vec<WaiverRow> {
                     at_most: waiver.at_most,
                     state: if waiver.expired { WaiverState::Expired } else { WaiverState::Unused },
                     covered: 0,
-                });
+                };
+                rows.push((row, false));
                 rows.len() - 1
             });
-            let row = &mut rows[at];
-            for finding in &case.findings {
-                if !waiver.is_about(&case.case.spelling, finding.check) {
-                    continue;
-                }
-                row.covered += usize::from(finding.outcome.verdict == Verdict::Waived);
-                row.state = match (row.state, finding.outcome.verdict) {
+            let (row, judged) = &mut rows[at];
+            for result in results.iter().filter(|r| waiver.is_about(&case.spelling, &r.check)) {
+                *judged |= result.verdict != Verdict::Skipped;
+                row.covered += usize::from(result.verdict == Verdict::Waived);
+                row.state = match (row.state, result.verdict) {
                     (WaiverState::Unused, Verdict::Waived) => WaiverState::Used,
                     (WaiverState::Unused | WaiverState::Used, Verdict::Fail) => WaiverState::Exceeded,
                     (state, _) => state,
@@ -150,7 +153,11 @@ fn waivers(results: &Results) -> Vec<WaiverRow> {
             }
         }
     }
-    rows
+    // One that names no subject of the plan covers nothing whatever is run.
+    let named =
+        |row: &WaiverRow| plan.cases.iter().any(|c| c.group == row.subject || c.spelling == row.subject);
+    rows.retain(|(row, judged)| *judged || !named(row));
+    rows.into_iter().map(|(row, _)| row).collect()
 }
 
 fn row(case: &CaseResult, finding: &Finding, files: &Files) -> CheckResult {
