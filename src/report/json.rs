@@ -1,7 +1,7 @@
 //! report.json: the one source of every other output.
 
 use crate::bsdf::{Claims, Transport};
-use crate::checks::{Effect, Verdict};
+use crate::checks::{self, Effect, Verdict};
 use crate::comparison::Comparison;
 use crate::diagnosis::Profile;
 use crate::evidence::{Evaluations, Figure, Place};
@@ -9,6 +9,7 @@ use crate::registry::Parameters;
 use crate::suite::Source;
 use schemars::JsonSchema;
 use serde::{Deserialize, Serialize};
+use std::collections::BTreeSet;
 
 /// The version of this format; readers refuse a larger one.
 pub const SCHEMA_VERSION: u32 = 1;
@@ -54,6 +55,16 @@ pub struct Report {
     pub results: Vec<CheckResult>,
     /// What is wrong with failing subjects.
     pub diagnoses: Vec<Diagnosis>,
+}
+
+impl Report {
+    /// The checks that it has results of, in the order of reports, unknown ones last.
+    pub fn checks(&self) -> Vec<&str> {
+        let met: BTreeSet<&str> = self.results.iter().map(|r| r.check.as_str()).collect();
+        let known = checks::all().iter().map(|c| c.id()).filter(|id| met.contains(id));
+        let unknown = met.iter().copied().filter(|id| checks::find(id).is_none());
+        known.chain(unknown).collect()
+    }
 }
 
 /// Where a run took place.

@@ -8,7 +8,7 @@ use crate::checks::Verdict;
 use crate::comparison::Comparison;
 use crate::report::changes::in_words;
 use crate::report::json::{CheckResult, Diagnosis, Report, WaiverRow, WaiverState};
-use crate::report::terminal::{columns, short, symbol};
+use crate::report::terminal::{short, symbol};
 use crate::report::wording::facts;
 use std::collections::{BTreeMap, BTreeSet};
 use std::fmt::Write;
@@ -102,7 +102,7 @@ fn about(report: &Report) -> String {
 
 /// Subjects and checks; of many subjects those with trouble.
 fn table(report: &Report, site: &Site) -> Option<String> {
-    let columns = columns(report);
+    let columns = report.checks();
     let mut rows: Vec<&str> = Vec::new();
     let mut met: BTreeSet<&str> = BTreeSet::new();
     let mut worst: BTreeMap<(&str, &str), Verdict> = BTreeMap::new();

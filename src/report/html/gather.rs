@@ -228,7 +228,7 @@ mod tests {
     #[test]
     fn failures_are_read_first_and_no_more_than_there_is_time_for() {
         use super::super::super::synthetic::report;
-        use super::super::subject::{columns, subjects};
+        use super::super::subject::subjects;
         let mut report = report();
         let one = report.results[0].clone();
         report.results.clear();
@@ -239,7 +239,7 @@ mod tests {
             result.verdict = if number == 1998 { crate::checks::Verdict::Fail } else { one.verdict };
             report.results.push(result);
         }
-        let columns = columns(&report);
+        let columns = report.checks();
         let subjects = subjects(&report, &columns);
         let wanted = wanted(&subjects);
         assert!(wanted.iter().zip(&subjects).all(|(w, s)| w[s.first_case().unwrap()].is_some()));

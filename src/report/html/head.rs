@@ -121,13 +121,13 @@ fn limits(report: &Report) -> Option<String> {
 #[cfg(test)]
 mod tests {
     use super::super::super::synthetic::report;
-    use super::super::subject::{columns, subjects};
+    use super::super::subject::subjects;
     use super::*;
 
     #[test]
     fn the_verdict_is_a_sentence() {
         let mut report = report();
-        let say = |report: &Report| sentence(report, &subjects(report, &columns(report)));
+        let say = |report: &Report| sentence(report, &subjects(report, &report.checks()));
         assert_eq!(say(&report), "1 of 3\u{a0}subjects failed");
         report.results.retain(|r| r.verdict != Verdict::Fail);
         report.summary.failed = 0;

@@ -11,7 +11,7 @@ use super::names;
 use super::pack::packed;
 use super::scales::scales;
 use super::section::{at, section};
-use super::subject::{Subject, columns, is_telling, is_wrong, subjects};
+use super::subject::{Subject, is_telling, is_wrong, subjects};
 use crate::cause::Cause;
 use crate::checks::Verdict;
 use askama::Template;
@@ -133,7 +133,7 @@ fn symbol_of(verdict: &Verdict) -> char {
 pub fn page(folder: &Path, report: &Report) -> String {
     let changes = report.comparison.as_ref().map(Changes::of);
     let changes = changes.as_ref();
-    let columns = columns(report);
+    let columns = report.checks();
     let subjects = subjects(report, &columns);
     let checks: usize = subjects.iter().map(|s| s.checks.len()).sum();
     let words = checks * BYTES_A_CHECK + report.results.len() * BYTES_A_RESULT + MOST_PLAIN;

@@ -3,8 +3,8 @@
 use super::super::json::{CheckResult, Diagnosis, Report, SubjectId, WoAngles};
 use super::names;
 use crate::bsdf::Transport;
-use crate::checks::{self, Verdict};
-use std::collections::{BTreeSet, HashMap, HashSet};
+use crate::checks::Verdict;
+use std::collections::{HashMap, HashSet};
 
 /// A subject with everything that was found of it.
 pub struct Subject<'a> {
@@ -86,14 +86,6 @@ impl Subject<'_> {
 /// How far a result is beyond what is tolerated.
 fn size(result: &CheckResult) -> f64 {
     result.effect.as_ref().map_or(0.0, |e| (e.value.0 / e.tolerance.0).abs()).max(0.0)
-}
-
-/// Checks in the order of reports, unknown ones last.
-pub fn columns(report: &Report) -> Vec<&str> {
-    let met: BTreeSet<&str> = report.results.iter().map(|r| r.check.as_str()).collect();
-    let known = checks::all().iter().map(|c| c.id()).filter(|id| met.contains(id));
-    let unknown = met.iter().copied().filter(|id| checks::find(id).is_none());
-    known.chain(unknown).collect()
 }
 
 /// The subjects of a report in its order.

@@ -1,7 +1,7 @@
 //! What is wrong, in full.
 
 use super::super::json::{CheckResult, Diagnosis, Report};
-use super::super::wording::{certainty, direction, effect, probability, worst};
+use super::super::wording::{direction, facts, probability};
 use super::look::{Look, code, indented, line, symbol, told};
 use crate::checks::Verdict;
 use std::collections::{BTreeMap, BTreeSet};
@@ -188,19 +188,8 @@ fn block(text: &mut String, kind: &[&CheckResult], found: Option<&Diagnosis>, lo
         n => format!("  (and {} more directions)", n - 1),
     };
     line(text, &format!("{verdict}  {}  {}{wo}{more}", result.subject.name, look.paint("1", &result.check)));
-    if let Some(found) = &result.effect {
-        let channel = result.channel.as_ref().map_or(String::new(), |c| format!(" (channel {c})"));
-        indented(text, &(effect(found) + &channel), 4, look);
-    }
-    if let Some(certain) = certainty(result) {
-        indented(text, &certain, 4, look);
-    }
-    if let Some(place) = &result.worst {
-        indented(text, &worst(place), 4, look);
-    }
-    indented(text, &result.message, 4, look);
-    if let Some(reason) = result.reason.as_ref().filter(|r| **r != result.message) {
-        indented(text, reason, 4, look);
+    for fact in facts(result) {
+        indented(text, &fact, 4, look);
     }
     if let Some(found) = found {
         diagnosis(text, found, Some(result), look);

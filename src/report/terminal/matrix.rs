@@ -4,7 +4,7 @@ use super::super::json::{CheckResult, Report};
 use super::super::plots::shortened;
 use super::super::wording::direction;
 use super::look::{Look, code, indented, line, symbol};
-use crate::checks::{self, Verdict};
+use crate::checks::Verdict;
 use std::collections::{BTreeMap, BTreeSet};
 use std::fmt::Write;
 
@@ -53,16 +53,8 @@ pub fn case_of(result: &CheckResult) -> (String, String, String) {
     (result.subject.name.clone(), wo, result.evidence.clone().unwrap_or_default())
 }
 
-/// Checks in the order of reports, unknown ones last.
-pub fn columns(report: &Report) -> Vec<&str> {
-    let met: BTreeSet<&str> = report.results.iter().map(|r| r.check.as_str()).collect();
-    let known = checks::all().iter().map(|c| c.id()).filter(|id| met.contains(id));
-    let unknown = met.iter().copied().filter(|id| checks::find(id).is_none());
-    known.chain(unknown).collect()
-}
-
 pub fn matrix(text: &mut String, report: &Report, look: Look) {
-    let mut columns = columns(report);
+    let mut columns = report.checks();
     let mut rows: Vec<&str> = Vec::new();
     let mut worst: BTreeMap<(&str, &str), Verdict> = BTreeMap::new();
     let mut cases: BTreeMap<&str, BTreeSet<(String, String, String)>> = BTreeMap::new();

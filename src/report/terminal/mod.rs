@@ -11,5 +11,5 @@ mod tests;
 pub use blocks::diagnoses;
 pub use comparison::comparison;
 pub use look::{Look, symbol};
-pub(super) use matrix::{columns, short};
+pub(super) use matrix::short;
 pub use summary::summary;
