@@ -201,6 +201,12 @@ fn only_what_changed_is_measured_again() {
     assert_eq!(report["diagnoses"], before["diagnoses"]);
     assert_eq!(desk.files("same/evidence"), desk.files("main/evidence"));
 
+    // Evidence that cannot be drawn again is an error, and loses nothing.
+    let damaged = desk.path("same/evidence/case-0000.json.gz");
+    std::fs::write(&damaged, "not gzip").unwrap();
+    desk.gonio("run changing.toml -o kept --changed-since same").ends(5).says("case-0000");
+    assert_eq!(plain(desk.report("kept")), plain(before.clone()));
+
     // The plugin changed: its subjects are measured, the built-in one is not.
     compile(&desk, true);
     let next = desk.gonio("run changing.toml -o main --changed-since main");

@@ -79,11 +79,11 @@ fn run(
     let folder = request.folder(plan);
     let baseline = read_baseline(request, plan, voice)?;
     let carried = read_carried(request, plan, voice)?;
-    let (mut report, measured) = measure(plan, request, voice, stop, folder.as_deref(), carried);
-    if let (Some(folder), Some(which)) = (&folder, request.plots.which())
-        && report.subjects.iter().any(|s| s.carried)
-    {
-        redraw(folder, &mut report, which)?;
+    let takes_over = !carried.rows.is_empty();
+    let (mut report, mut measured) = measure(plan, request, voice, stop, folder.as_deref(), carried);
+    if let (true, Some(folder), Some(which)) = (takes_over, &folder, request.plots.which()) {
+        // A picture that cannot be drawn must not lose the report.
+        measured = measured.and(redraw(folder, &mut report, which).map(drop));
     }
     let comparison = baseline.as_ref().map(|before| compare(before, &report));
     let report = report.compared(comparison);
@@ -138,7 +138,8 @@ fn measure(
     let mut diagnoses = Diagnosis::all(&results, diagnosed);
     let mut plots = BTreeMap::new();
     if let Some(folder) = folder {
-        if let Some(which) = request.plots.which() {
+        // Beside results that are taken over everything is drawn from evidence, once.
+        if let Some(which) = request.plots.which().filter(|_| carried.rows.is_empty()) {
             note(draw_results(folder, &results, &diagnoses, which).map(|drawn| plots = drawn));
             note(draw_diagnoses(folder, &mut diagnoses));
         }

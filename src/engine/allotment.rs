@@ -74,11 +74,10 @@ impl Allotment {
         if let Draws::Within(budget) = draws {
             end = budget.as_secs_f64();
             let mut known: BTreeMap<&str, Cost> = BTreeMap::new();
-            let cost = |case: &'_ Arc<Case<'static>>| Cost::of(case);
             costs = vec![Cost { fixed: 0.0, draw: 0.0 }; plan.cases.len()];
             for &index in chosen {
                 let case = &plan.cases[index];
-                costs[index] = *known.entry(&case.spelling).or_insert_with(|| cost(case));
+                costs[index] = *known.entry(&case.spelling).or_insert_with(|| Cost::of(case));
                 fixed += costs[index].fixed;
                 roots += costs[index].draw.cbrt();
             }

@@ -109,8 +109,9 @@ fn subjects(plan: &Plan, samples: bool, carried: &Carried) -> Vec<SubjectEntry> 
     let entry = |case: &Arc<Case>| {
         let digest = digests.remove(&(case.group.clone(), case.spelling.clone()))?;
         let (name, source) = (case.spelling.clone(), case.source.clone());
+        let label = label(&case.group, &case.spelling).map(str::to_string);
         let carried = carried.holds(&case.group, &case.spelling);
-        Some(SubjectEntry { name, label: label(case), digest, source, carried })
+        Some(SubjectEntry { name, label, digest, source, carried })
     };
     plan.cases.iter().filter_map(entry).collect()
 }
@@ -169,7 +170,7 @@ fn row(case: &CaseResult, finding: &Finding, files: &Files) -> CheckResult {
     let kind = description.map(|d| d.kind).or_else(|| Some(asked()?.kind)).unwrap_or_default();
     CheckResult {
         subject: SubjectId {
-            label: label(&case.case),
+            label: label(&case.case.group, &case.case.spelling).map(str::to_string),
             name: case.case.spelling.clone(),
             parameters: case.case.parameters.clone(),
             claims: description.map_or_else(

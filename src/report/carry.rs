@@ -40,9 +40,8 @@ impl Carried {
             rows.entry(of_row(row)).or_default().push(row);
         }
         let find = |case: &Case| {
-            let label = label(case);
             let wo = [case.theta_deg, case.phi_deg].map(f64::to_bits);
-            let key = |wo| (label.as_deref(), case.spelling.as_str(), wo, case.transport);
+            let key = |wo| (label(&case.group, &case.spelling), case.spelling.as_str(), wo, case.transport);
             let found = rows.get(&key(Some(wo))).or_else(|| rows.get(&key(None)))?;
             found
                 .iter()
@@ -52,9 +51,9 @@ impl Carried {
         let mut same: BTreeSet<(String, String)> = digests(plan, samples)
             .into_iter()
             .filter(|((group, spelling), digest)| {
-                let named = spelling.split(':').next() == Some(group.as_str());
-                let label = (!named).then_some(group.as_str());
-                known.get(&(label, spelling.as_str())).is_some_and(|entry| entry.digest == *digest)
+                known
+                    .get(&(label(group, spelling), spelling.as_str()))
+                    .is_some_and(|entry| entry.digest == *digest)
             })
             .map(|(key, _)| key)
             .collect();
@@ -110,8 +109,8 @@ impl Carried {
 }
 
 /// What a row is called that is not named as its subject.
-pub fn label(case: &Case) -> Option<String> {
-    (case.spelling.split(':').next() != Some(&case.group)).then(|| case.group.clone())
+pub fn label<'a>(group: &'a str, spelling: &str) -> Option<&'a str> {
+    (spelling.split(':').next() != Some(group)).then_some(group)
 }
 
 /// Not of a case that was never begun, nor of one that could not be measured.

@@ -49,28 +49,20 @@ pub fn draw_results(
 
 /// Draws the pictures of diagnoses, and tells each its path.
 pub fn draw_diagnoses(folder: &Path, diagnoses: &mut [Diagnosis]) -> Result<(), FileError> {
-    let paths = draw_profiles(folder, diagnoses)?;
-    for (found, path) in diagnoses.iter_mut().zip(paths) {
-        found.plot = path;
-    }
-    Ok(())
-}
-
-/// Draws the profiles of diagnoses; where each is that has one.
-fn draw_profiles(folder: &Path, diagnoses: &[Diagnosis]) -> Result<Vec<Option<String>>, FileError> {
     let mut names = BTreeSet::new();
-    let mut draw_one = |found: &Diagnosis| {
-        let Some(profile) = &found.profile else { return Ok(None) };
+    for found in diagnoses {
+        let Some(profile) = &found.profile else { continue };
         let path = format!("plots/diagnosis-{}.svg", file_name(&found.subject, &mut names));
         write_whole(&folder.join(&path), diagnosis_picture(&found.subject, profile).as_bytes())?;
-        Ok(Some(path))
-    };
-    diagnoses.iter().map(&mut draw_one).collect()
+        found.plot = Some(path);
+    }
+    Ok(())
 }
 
 /// Draws the pictures of a saved report again from its evidence, and tells each result
 /// its own; how many cases have one.
 pub fn redraw(folder: &Path, report: &mut Report, which: Which) -> Result<usize, FileError> {
+    draw_diagnoses(folder, &mut report.diagnoses)?;
     let drawn = draw_saved(folder, report, which)?;
     for row in &mut report.results {
         row.plot = row.evidence.as_deref().and_then(number).and_then(|index| drawn.get(&index).cloned());
@@ -112,7 +104,6 @@ fn draw_saved(folder: &Path, report: &Report, which: Which) -> Result<BTreeMap<u
             }
         })
         .collect();
-    draw_profiles(folder, &report.diagnoses)?;
     draw(folder, &cases, &p_values, which)
 }
 
