@@ -17,6 +17,7 @@ pub mod comparison;
 pub mod diagnosis;
 pub mod engine;
 pub mod evidence;
+pub mod grading;
 pub mod lecture;
 mod measure;
 pub mod measured;
