@@ -2,4 +2,5 @@
 
 mod grade;
 
-pub use grade::{Broken, GRADE_VERSION, Grade, Hints, Incident, ItemGrade, ItemKind, Lost, Phase};
+pub use crate::plugins::{Incident, Phase};
+pub use grade::{Broken, GRADE_VERSION, Grade, Hints, ItemGrade, ItemKind, Lost};
