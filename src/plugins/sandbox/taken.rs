@@ -1,10 +1,14 @@
 //! What all processes of a sandbox take together.
 
+use super::rules::Rules;
 use std::path::{Path, PathBuf};
 use std::time::Duration;
 
 /// Length of the kernel's tick for programs: USER_HZ, the same on all of today's machines.
 const TICK: Duration = Duration::from_millis(10);
+
+/// Threads for each process that is allowed.
+const THREADS: u64 = 8;
 
 /// An empty file takes about this much of the kernel's memory.
 const FILE: u64 = 1024;
@@ -80,6 +84,15 @@ impl Where {
 }
 
 impl Taken {
+    /// What is too many of them, if something is.
+    pub fn crowded(&self, rules: &Rules) -> Option<String> {
+        let (processes, threads) = (rules.processes, rules.processes * THREADS);
+        if self.processes > processes {
+            return Some(format!("more than {processes} processes at a time"));
+        }
+        (self.threads > threads).then(|| format!("more than {threads} threads at a time"))
+    }
+
     /// Adds a process, or of bubblewrap's own only what its children took.
     fn add(&mut self, process: &Path, only_children: bool) {
         let Ok(stat) = std::fs::read(process.join("stat")) else { return };
