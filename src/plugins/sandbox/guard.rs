@@ -71,15 +71,31 @@ pub fn guard(rules: &Rules, log: Option<&Path>, bubblewrap: Option<&Path>, words
         }
     };
     let status = guard.run();
+    // Bubblewrap tells of a signal as shells do.
+    let code = status.and_then(|status| status.exit_status()).filter(|_| bubblewrap.is_some());
+    let signal = match code {
+        Some(code @ 129..=192) => Some(code - 128),
+        _ => status.and_then(|status| status.terminating_signal()),
+    };
+    if let Some(what) = signal.and_then(by_signal) {
+        guard.log.note(what);
+    }
     guard.log.flush();
     end_descendants();
-    match status {
-        None => ENDED,
-        // As shells and bubblewrap tell of a signal.
-        Some(status) => match status.exit_status().filter(|_| bubblewrap.is_some()) {
-            Some(code @ 129..=192) => end_by(code - 128),
-            _ => end_as(status),
-        },
+    match (status, signal) {
+        (None, _) => ENDED,
+        (_, Some(signal)) => end_by(signal),
+        (Some(status), None) => end_as(status),
+    }
+}
+
+/// What the kernel ends a process for by this signal.
+fn by_signal(signal: i32) -> Option<&'static str> {
+    match signal {
+        libc::SIGSYS => Some("called the system by another architecture's door"),
+        libc::SIGXCPU => Some("was ended for its processor time"),
+        libc::SIGXFSZ => Some("was ended for the size of a file"),
+        _ => None,
     }
 }
 
@@ -256,7 +272,7 @@ impl Guard<'_> {
         if let Some(most) = rules.processor.filter(|most| taken.processor > Duration::from_secs(*most)) {
             return Some(format!("more than {most} s of processor time"));
         }
-        if places.disk() >= rules.disk {
+        if places.disk(&rules.work) >= rules.disk {
             return Some(format!("more than {} of files", mebibytes(rules.disk)));
         }
         None

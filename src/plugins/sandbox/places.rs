@@ -13,7 +13,6 @@ const SHOWN: &[&str] = &[
     "/lib32",
     "/lib64",
     "/libx32",
-    "/work",
     "/tmp",
     "/dev",
     "/etc/alternatives",
@@ -80,7 +79,8 @@ pub fn absolute(folder: &Path, path: &Path) -> PathBuf {
 
 /// Whether a program may look at this path; `own` is its number in the sandbox.
 pub fn may_read(path: &Path, rules: &Rules, own: Option<u32>) -> bool {
-    let shown = || SHOWN.iter().map(Path::new).chain(rules.open.iter().map(Path::new));
+    let more = || rules.open.iter().chain([&rules.work]).map(Path::new);
+    let shown = || SHOWN.iter().map(Path::new).chain(more());
     // What is above it is on the way there.
     if shown().any(|place| path.starts_with(place) || place.starts_with(path)) {
         return true;
@@ -107,7 +107,7 @@ pub fn may_read(path: &Path, rules: &Rules, own: Option<u32>) -> bool {
 /// Whether it may write there.
 pub fn may_write(path: &Path, rules: &Rules) -> bool {
     WRITABLE.iter().any(|place| path.starts_with(place))
-        || (rules.phase == Phase::Build && path.starts_with("/work"))
+        || (rules.phase == Phase::Build && path.starts_with(&rules.work))
 }
 
 #[cfg(test)]
@@ -124,6 +124,7 @@ mod tests {
             clock: None,
             processes: 1,
             disk: 0,
+            work: "/work".into(),
             open: vec!["/home/t/venv".into()],
         }
     }

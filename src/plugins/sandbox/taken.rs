@@ -68,7 +68,7 @@ impl Where {
     }
 
     /// Bytes of its files.
-    pub fn disk(&self) -> u64 {
+    pub fn disk(&self, work: &str) -> u64 {
         let Self::Sandbox { root } = self else { return 0 };
         let used = |folder: &str| {
             let Ok(now) = rustix::fs::statvfs(root.join(folder)) else { return 0 };
@@ -79,7 +79,7 @@ impl Where {
             now.f_blocks.saturating_sub(now.f_bfree) * now.f_frsize
                 + now.f_files.saturating_sub(now.f_ffree) * FILE
         };
-        used("tmp") + used("work")
+        used("tmp") + used(work.trim_start_matches('/'))
     }
 }
 
