@@ -119,6 +119,8 @@ fn bombs_end() {
         ("zero.c", "#include \"/dev/zero\"\n"),
         ("huge.c", "char a[1 << 30] = {1}; int main(void) { return a[5]; }\n"),
         ("bomb.cpp", template),
+        ("memory.sh", "for k in 1 2 3 4 5 6; do /usr/bin/python3 memory.py & done; wait\n"),
+        ("memory.py", "import time\na = b'x' * (250 << 20)\ntime.sleep(5)\n"),
         ("fork.sh", "f() { f | f & }; f; sleep 100\n"),
     ];
     let mut desk = Desk::new(&files);
@@ -132,6 +134,7 @@ fn bombs_end() {
         "sh fork.sh",
         "while :; do :; done",
         "yes",
+        "sh memory.sh",
         "sleep 100",
     ] {
         let start = std::time::Instant::now();
@@ -144,7 +147,13 @@ fn bombs_end() {
         assert!(ended, "{script}: {failure:?}");
     }
     let all: Vec<String> = desk.incidents().into_iter().map(|i| i.what).collect();
-    for part in ["64 processes at a time", "2 s of processor time", "1 MiB of messages", "more than 8 s"] {
+    for part in [
+        "64 processes at a time",
+        "2 s of processor time",
+        "1 MiB of messages",
+        "1024 MiB of memory",
+        "more than 8 s",
+    ] {
         assert!(all.iter().any(|what| what.contains(part)), "no `{part}` in {all:#?}");
     }
 }

@@ -70,8 +70,9 @@ fn begin(rules: &Rules) -> io::Result<()> {
         limit(Resource::Cpu, seconds + GRACE)?;
     }
     set_no_new_privs(true)?;
-    // Last, since this program needs memory too.
-    limit(Resource::As, rules.memory)?;
+    // Last, since this program needs memory too. More than the guard allows of what is used,
+    // so that it is the guard that tells.
+    limit(Resource::As, rules.memory + rules.memory / 2)?;
     match watched(rules) {
         Ok(None) => send(rustix::stdio::stdin(), BEGINS, &[])?,
         Ok(Some(listener)) => send(rustix::stdio::stdin(), BEGINS, &[listener.as_fd()])?,

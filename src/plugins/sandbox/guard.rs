@@ -223,11 +223,9 @@ impl Guard<'_> {
                 let _ = writeln!(io::stderr(), "\n{VOICE}{why}");
                 return None;
             }
-            if count {
-                if self.written.elapsed() >= WRITE {
-                    self.log.flush();
-                    self.written = Instant::now();
-                }
+            if self.written.elapsed() >= WRITE {
+                self.log.flush();
+                self.written = Instant::now();
             }
         }
     }
