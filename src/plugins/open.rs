@@ -1,6 +1,6 @@
 //! From a name to the model of a plugin.
 
-use super::description::parameters_json;
+use super::description::{ModelDescription, parameters_json};
 use super::limits::Limits;
 use super::plugin::Plugin;
 use super::route::Named;
@@ -50,16 +50,7 @@ impl Plugins {
             Ok(model) => model.clone(),
             Err(why) => return Some(Err(format!("`{file}` {why}"))),
         };
-        let (declaring, doc) = (description.clone(), description.doc.clone());
-        let called = name.to_string();
-        let model = Model::dynamic(name, doc, move |parameters| {
-            let made = Foreign::create(&plugin, &description, parameters_json(parameters));
-            Ok(match made {
-                Ok(subject) => Arc::new(subject) as Arc<dyn Subject>,
-                Err(why) => Arc::new(Broken { name: called.clone(), why }),
-            })
-        });
-        Some(Ok(declaring.declare(model)))
+        Some(Ok(model_of(&plugin, &description, name)))
     }
 
     /// The models of the plugin `file` and what they are, where it has several.
@@ -77,6 +68,29 @@ impl Plugins {
         let opened = named.route(&self.limits).and_then(|route| Plugin::open(file, route, &self.limits));
         opened.map(Arc::new).map_err(|fault| fault.to_string())
     }
+}
+
+/// The models that the plugin `file` offers, each called as it calls them.
+///
+/// # Errors
+/// Why it cannot be opened.
+pub fn offered(file: &str, named: &Named, limits: &Limits) -> Result<Vec<Model>, String> {
+    let opened = named.route(limits).and_then(|route| Plugin::open(file, route, limits));
+    let plugin = Arc::new(opened.map_err(|fault| fault.to_string())?);
+    Ok(plugin.hello.models.iter().map(|model| model_of(&plugin, model, &model.name)).collect())
+}
+
+/// A model of a plugin, which is called so.
+fn model_of(plugin: &Arc<Plugin>, description: &ModelDescription, name: &str) -> Model {
+    let (plugin, declaring, called) = (plugin.clone(), description.clone(), name.to_string());
+    let model = Model::dynamic(name, description.doc.clone(), move |parameters| {
+        let made = Foreign::create(&plugin, &declaring, parameters_json(parameters));
+        Ok(match made {
+            Ok(subject) => Arc::new(subject) as Arc<dyn Subject>,
+            Err(why) => Arc::new(Broken { name: called.clone(), why }),
+        })
+    });
+    description.declare(model)
 }
 
 /// The model of a plugin that cannot be opened.
