@@ -67,7 +67,7 @@ impl Measurement {
                     Some(index) => index,
                     None => {
                         let twin = cases.iter().any(|other| other.place() == planned.place());
-                        let label = twin.then(|| format!("{} ({})", planned.spelling, item.id));
+                        let label = twin.then(|| format!("{} ({})", name_of(&planned.spelling), item.id));
                         cases.push(Planned { checks: Vec::new(), label, ..planned.clone() });
                         cases.len() - 1
                     }
@@ -187,6 +187,11 @@ impl Measurement {
     }
 }
 
+/// The model of a subject.
+fn name_of(spelling: &str) -> &str {
+    spelling.split(':').next().unwrap_or(spelling)
+}
+
 fn said(error: impl std::fmt::Display) -> String {
     error.to_string()
 }
@@ -256,5 +261,98 @@ impl Planned {
     /// its neighbour.
     fn tests(&self) -> usize {
         self.checks.iter().filter(|id| checks::find(id).is_some_and(|c| c.is_statistical())).count()
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use crate::grading::load;
+
+    const RUBRIC: &str = r#"
+[rubric]
+hidden = "hidden.toml"
+false_alarm = 1e-4
+theta = [30, 70]
+[[language]]
+when = "x"
+wasm = "x.wasm"
+[model.lambert]
+[[item]]
+id = "builds"
+points = 1
+[[item]]
+id = "pdf"
+points = 1
+subject = ["lambert", "lambert:reflectance=0.2"]
+checks = ["normalization", "sanity"]
+[[item]]
+id = "fit"
+points = 1
+subject = "lambert"
+checks = "goodness-of-fit"
+[[item]]
+id = "other-terms"
+points = 1
+subject = "lambert"
+checks = "goodness-of-fit"
+samples = "2^15"
+theta = 70
+"#;
+
+    const HIDDEN: &str = "seed = 9\n[[item]]\nid = 'more'\npoints = 1\nsubject = 'lambert'\nchecks = ['mis', 'albedo']\ntheta = [30, 10]\n";
+
+    fn measurement(hidden: bool) -> (Rubric, Measurement) {
+        let folder = tempfile::tempdir().unwrap();
+        std::fs::write(folder.path().join("rubric.toml"), RUBRIC).unwrap();
+        std::fs::write(folder.path().join("hidden.toml"), HIDDEN).unwrap();
+        let rubric = load(&folder.path().join("rubric.toml"), hidden).unwrap();
+        let measurement = Measurement::of(&rubric);
+        (rubric, measurement)
+    }
+
+    #[test]
+    fn items_share_cases_and_students_have_the_same_thresholds() {
+        let (_, own) = measurement(false);
+        let (rubric, all) = measurement(true);
+        let names: Vec<_> =
+            all.cases.iter().map(|c| (c.spelling.as_str(), c.theta, c.checks.join(" "))).collect();
+        let many = "sanity goodness-of-fit normalization albedo mis";
+        assert_eq!(
+            names,
+            [
+                ("lambert", 30.0, many.to_string()),
+                ("lambert", 70.0, "sanity goodness-of-fit normalization".into()),
+                ("lambert", 70.0, "goodness-of-fit".into()),
+                ("lambert", 10.0, "albedo mis".into()),
+                ("lambert:reflectance=0.2", 30.0, "sanity normalization".into()),
+                ("lambert:reflectance=0.2", 70.0, "sanity normalization".into()),
+            ]
+        );
+        assert_eq!(all.of_item, [vec![], vec![0, 1, 4, 5], vec![0, 1], vec![2], vec![0, 3]]);
+        assert_eq!(own.share, all.share);
+        assert!(own.budget() <= 1e-4 && own.budget() > 0.999e-4, "{}", own.budget());
+        let tests = |m: &Measurement| m.tests as f64;
+        assert!((all.budget() / own.budget() - tests(&all) / tests(&own)).abs() < 1e-12);
+        let plan = all.plan(&rubric, &Registry::builtin(), None, &Registry::builtin()).unwrap();
+        assert_eq!((plan.seed, plan.share), (9, Some(all.share)));
+        let groups: Vec<&str> = plan.cases.iter().map(|c| c.group.as_str()).collect();
+        assert_eq!(groups[1..3], ["lambert", "lambert (other-terms)"], "told apart where they lie");
+    }
+
+    #[test]
+    fn what_is_not_offered_is_told() {
+        let (rubric, measurement) = measurement(false);
+        let none = measurement.plan(&rubric, &Registry::empty(), None, &Registry::empty());
+        assert!(none.err().unwrap().contains("lambert"));
+    }
+
+    #[test]
+    fn a_reference_takes_the_parameters_of_its_subject() {
+        let parameters = Parameters([("alpha".to_string(), crate::registry::Value::Number(0.25))].into());
+        assert_eq!(
+            filled("torrance-sparrow:alpha={alpha},masking=smith", &parameters),
+            "torrance-sparrow:alpha=0.25,masking=smith"
+        );
     }
 }
