@@ -1,7 +1,7 @@
 //! One submission, from where it was found to its grade.
 
-use super::building::{Opened, Prepared};
-use super::grade::{Broken, GRADE_VERSION, Grade, Incident};
+use super::building::Prepared;
+use super::grade::{Broken, GRADE_VERSION, Grade};
 use super::kept::{Kept, State};
 use super::plan::{Measurement, SOLUTION};
 use super::rubric::Rubric;
@@ -37,7 +37,7 @@ pub struct Grader {
     /// What references name besides the solution.
     registry: Registry,
     /// The teacher's own submission, where there is one.
-    solution: Option<(Prepared, Opened)>,
+    solution: Option<(Prepared, Registry)>,
     wishes: Wishes,
     /// Names all that results depend on besides the submission.
     terms: String,
@@ -82,7 +82,7 @@ impl Grader {
                     Failure::System(format!("the solution: {}\n{}", b.why, b.said).trim_end().into())
                 };
                 let prepared = Prepared::new(&rubric, &submission)?.map_err(wrong)?;
-                let opened = prepared.open(&rubric, &mut Vec::new()).map_err(wrong)?;
+                let opened = prepared.open(&rubric).map_err(wrong)?;
                 Some((prepared, opened))
             }
             None => {
@@ -136,24 +136,19 @@ impl Grader {
         state: State,
         kept: Option<Kept>,
     ) -> Result<Graded, Failure> {
-        let mut incidents = Vec::new();
-        let opened = prepared.open(&self.rubric, &mut incidents);
-        let told = |incidents: Vec<Incident>| Grade {
-            language: Some(prepared.language.name.clone()),
-            isolation: prepared.isolation(),
-            incidents,
-            ..self.grade_of(submission, &Measured::nothing())
-        };
-        let solution = self.solution.as_ref().map(|(_, opened)| &opened.registry);
-        let planned = opened.and_then(|opened| {
-            let plan = self.measurement.plan(&self.rubric, &opened.registry, solution, &self.registry);
-            plan.map(|plan| (opened, plan)).map_err(|why| Broken { why, said: String::new() })
+        let solution = self.solution.as_ref().map(|(_, registry)| registry);
+        let planned = prepared.open(&self.rubric).and_then(|registry| {
+            let plan = self.measurement.plan(&self.rubric, &registry, solution, &self.registry);
+            plan.map_err(|why| Broken { why, said: String::new() })
         });
-        let (opened, plan) = match planned {
-            Ok(planned) => planned,
+        let plan = match planned {
+            Ok(plan) => plan,
             Err(why) => {
                 Kept::forget(folder)?;
-                let grade = Grade { broken: Some(why), ..told(incidents) };
+                let grade = Grade {
+                    broken: Some(why),
+                    ..self.of_prepared(submission, prepared, &Measured::nothing())
+                };
                 return finish(folder, state, grade, None, true);
             }
         };
@@ -180,19 +175,12 @@ impl Grader {
             return Err(Failure::Stopped);
         }
         files?;
-        drop((plan, opened));
-        incidents.extend(prepared.incidents());
+        // What it does at its end is told too.
+        drop(plan);
         write_report(folder, &report)?;
         let measured = Measured::of(&self.measurement, &report).map_err(Failure::System)?;
         let diagnoses = report.diagnoses.iter().map(|d| Diagnosis { profile: None, ..d.clone() }).collect();
-        let (empty, scored) = (told(incidents), self.grade_of(submission, &measured));
-        let mut grade = Grade {
-            language: empty.language,
-            isolation: empty.isolation,
-            incidents: empty.incidents,
-            diagnoses,
-            ..scored
-        };
+        let mut grade = Grade { diagnoses, ..self.of_prepared(submission, prepared, &measured) };
         grade.review.extend(report.partial.clone());
         finish(folder, state, grade, Some(report), true)
     }
@@ -214,6 +202,15 @@ impl Grader {
             incidents: old.incidents,
             ..grade
         })
+    }
+
+    fn of_prepared(&self, submission: &Submission, prepared: &Prepared, measured: &Measured) -> Grade {
+        Grade {
+            language: Some(prepared.language.name.clone()),
+            isolation: prepared.isolation(),
+            incidents: prepared.incidents(),
+            ..self.grade_of(submission, measured)
+        }
     }
 
     fn grade_of(&self, submission: &Submission, measured: &Measured) -> Grade {

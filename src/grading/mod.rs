@@ -11,8 +11,9 @@ mod rubric;
 mod score;
 mod submissions;
 
+pub use crate::plugins::{Incident, Phase};
 pub use class::{Fairness, folder_of, grade_all, kept};
-pub use grade::{Broken, GRADE_VERSION, Grade, Hints, Incident, ItemGrade, ItemKind, Lost, Phase};
+pub use grade::{Broken, GRADE_VERSION, Grade, Hints, ItemGrade, ItemKind, Lost};
 pub use grader::{Failure, Graded, Grader, Wishes};
 pub use plan::{Measurement, Planned};
 pub use rubric::{Credit, Export, Item, Language, Route, Rubric, SandboxTerms, load};

@@ -15,7 +15,7 @@ mod schema;
 #[cfg(test)]
 pub(crate) mod synthetic;
 mod terminal;
-mod visible;
+pub(crate) mod visible;
 mod wording;
 
 pub use build::Files;

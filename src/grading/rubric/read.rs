@@ -4,6 +4,7 @@ use super::read_item::{Terms, read_item};
 use super::terms::{Export, FIELDS, Item, Language, Route, Rubric, SandboxTerms};
 use crate::bsdf::Precision;
 use crate::grading::ItemKind;
+use crate::plugins::Limits;
 use crate::suite::toml_reader::{Node, Reader, claims, entries};
 use crate::suite::{FALSE_ALARM, Mistake, SEED, SuiteError, fraction, mebibytes, time_limit};
 use regex::Regex;
@@ -54,6 +55,8 @@ pub fn load(path: &Path, with_hidden: bool) -> Result<Rubric, SuiteError> {
     let table = parse(path, &text)?;
     file.read(table.get_ref());
     let hidden = file.hidden.take();
+    file.rubric.hidden_path = hidden.as_ref().map(|named| file.folder.join(named.get_ref()));
+    file.rubric.limits = file.terms.limits();
     file.check_whole(table.span());
     let (mut rubric, terms) = file.finish(path, &text)?;
     if let (true, Some(hidden)) = (with_hidden, hidden) {
@@ -143,12 +146,14 @@ impl File {
             solution: None,
             seed: SEED,
             hidden: false,
+            hidden_path: None,
             false_alarm: FALSE_ALARM,
             precision: Precision::F64,
             limit: LIMIT,
             pattern: Regex::new("").expect("it is one"),
             id: None,
             sandbox: SandboxTerms::default(),
+            limits: Limits::default(),
             languages: Vec::new(),
             models: BTreeMap::new(),
             items: Vec::new(),

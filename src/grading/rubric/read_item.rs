@@ -4,6 +4,7 @@ use super::terms::{Credit, Item};
 use crate::bsdf::{ClaimsPatch, Transport};
 use crate::checks;
 use crate::grading::{Hints, ItemKind};
+use crate::plugins::Limits;
 use crate::registry::{Spelling, nearest};
 use crate::suite::toml_reader::{Node, Reader, check_id, claims, entries};
 use crate::suite::{Mistake, Settings, azimuth, fraction, mebibytes, polar, positive, time_limit};
@@ -40,6 +41,11 @@ impl Default for Terms {
 }
 
 impl Terms {
+    /// What a plugin may take.
+    pub fn limits(&self) -> Limits {
+        self.settings.limits
+    }
+
     /// Reads a key that the rubric and its items have in common; whether it is one.
     pub fn read(&mut self, reader: &mut Reader, key: &str, value: &Node) -> bool {
         match key {

@@ -2,6 +2,7 @@
 
 use crate::bsdf::{ClaimsPatch, Precision, Transport};
 use crate::grading::{Hints, ItemKind};
+use crate::plugins::Limits;
 use crate::suite::Settings;
 use regex::Regex;
 use std::collections::BTreeMap;
@@ -21,6 +22,8 @@ pub struct Rubric {
     pub seed: u64,
     /// Whether the hidden part was read.
     pub hidden: bool,
+    /// The file of the hidden part.
+    pub hidden_path: Option<PathBuf>,
     /// Probability that a correct submission loses any point of the items that are not
     /// hidden. Hidden ones are held to the same thresholds, and add to it.
     pub false_alarm: f64,
@@ -34,6 +37,8 @@ pub struct Rubric {
     pub id: Option<String>,
     /// What building and running may take.
     pub sandbox: SandboxTerms,
+    /// What one call may take.
+    pub limits: Limits,
     /// Languages, of which the first that fits is a submission's.
     pub languages: Vec<Language>,
     /// What a submission must offer, with what it is held to.
@@ -48,6 +53,12 @@ impl Rubric {
     /// The folder that its paths start from.
     pub fn folder(&self) -> &Path {
         self.path.parent().unwrap_or(Path::new(""))
+    }
+
+    /// The files that no submission may see: this rubric, its hidden part, the solution.
+    pub fn own_files(&self) -> Vec<PathBuf> {
+        let named = [Some(&self.path), self.hidden_path.as_ref(), self.solution.as_ref()];
+        named.into_iter().flatten().cloned().collect()
     }
 
     /// Points that can be reached without a bonus.
