@@ -3,7 +3,7 @@
 use super::error::CliError;
 use super::exit::Exit;
 use super::output::tell;
-use crate::plugins;
+use crate::plugins::{self, Rules};
 use clap::Subcommand;
 use std::ffi::OsString;
 use std::path::PathBuf;
@@ -26,6 +26,30 @@ enum Work {
         #[arg(last = true, required = true)]
         command: Vec<OsString>,
     },
+    /// Run a command in a sandbox, count what it takes and tell what it tries.
+    Guard {
+        /// What holds in it (JSON).
+        #[arg(long, value_parser = rules)]
+        rules: Rules,
+        /// The file that incidents are appended to.
+        #[arg(long)]
+        log: Option<PathBuf>,
+        /// The program of bubblewrap, if it is used.
+        #[arg(long)]
+        bubblewrap: Option<PathBuf>,
+        /// The arguments of bubblewrap, `--`, and the command.
+        #[arg(last = true, required = true)]
+        words: Vec<OsString>,
+    },
+    /// Confine this process and become a command.
+    Confine {
+        /// What holds in its sandbox (JSON).
+        #[arg(long, value_parser = rules)]
+        rules: Rules,
+        /// The command.
+        #[arg(last = true, required = true)]
+        words: Vec<OsString>,
+    },
     /// Answer for a shared library on standard input and output.
     Library {
         /// The library.
@@ -33,10 +57,18 @@ enum Work {
     },
 }
 
+fn rules(text: &str) -> Result<Rules, String> {
+    serde_json::from_str(text).map_err(|e| e.to_string())
+}
+
 /// Does the work. Supervision ends this process as its command ended.
 pub fn work(args: &WorkerArgs) -> Result<Exit, CliError> {
     match &args.work {
         Work::Supervise { memory, command } => std::process::exit(plugins::supervise(command, *memory)),
+        Work::Guard { rules, log, bubblewrap, words } => {
+            std::process::exit(plugins::guard(rules, log.as_deref(), bubblewrap.as_deref(), words))
+        }
+        Work::Confine { rules, words } => std::process::exit(plugins::confine(rules, words)),
         Work::Library { path } => {
             // The last words of a plugin, which gonio shows.
             let Err(e) = plugins::work(path) else { return Ok(Exit::Passed) };

@@ -4,6 +4,7 @@
 use crate::bsdf::Transport;
 use crate::checks::{Effect, Verdict};
 use crate::evidence::Place;
+use crate::plugins::Incident;
 use crate::report::{Diagnosis, WoAngles};
 use schemars::JsonSchema;
 use serde::{Deserialize, Serialize};
@@ -161,25 +162,4 @@ pub struct Lost {
     /// File of the evidence, from the submission's own folder.
     #[serde(default, skip_serializing_if = "Option::is_none")]
     pub evidence: Option<String>,
-}
-
-/// Something that a submission tried and that no BRDF needs.
-#[derive(Clone, Debug, PartialEq, Eq, PartialOrd, Ord, Serialize, Deserialize, JsonSchema)]
-pub struct Incident {
-    /// While it was built, or measured.
-    pub phase: Phase,
-    /// In a few words, with the path, address or program.
-    pub what: String,
-    /// How often.
-    pub times: u64,
-}
-
-/// When something happened.
-#[derive(Clone, Copy, Debug, PartialEq, Eq, PartialOrd, Ord, Serialize, Deserialize, JsonSchema)]
-#[serde(rename_all = "lowercase")]
-pub enum Phase {
-    /// While it was unpacked and built.
-    Build,
-    /// While it was measured.
-    Run,
 }

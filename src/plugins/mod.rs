@@ -11,6 +11,7 @@ mod plugin;
 mod probe;
 mod process;
 mod route;
+mod sandbox;
 mod subject;
 mod wasm;
 mod wire;
@@ -19,6 +20,9 @@ pub use conventions::{Conventions, Failure, Frame, Given, Up, Weight};
 pub use instance::{Call, Created, Fault, Function, Instance};
 pub use library::work;
 pub use limits::Limits;
-pub use open::Plugins;
-pub use process::{in_path, set_gonio, supervise};
-pub use route::Named;
+pub use open::{Plugins, offered};
+pub use process::{Launch, Program, in_path, set_gonio, supervise};
+pub use route::{Named, Route};
+pub use sandbox::{
+    Allowance, BuildFailure, Incident, Isolation, Phase, Rules, Sandbox, confine, guard, incidents, isolation,
+};

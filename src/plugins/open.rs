@@ -1,9 +1,10 @@
 //! From a name to the model of a plugin.
 
-use super::description::parameters_json;
+use super::description::{ModelDescription, parameters_json};
 use super::limits::Limits;
 use super::plugin::Plugin;
 use super::route::Named;
+use super::sandbox::Sandbox;
 use super::subject::{Broken, Foreign};
 use crate::bsdf::{Subject, SubjectError};
 use crate::registry::Model;
@@ -16,13 +17,19 @@ type Opened = Result<Arc<Plugin>, String>;
 #[derive(Default)]
 pub struct Plugins {
     limits: Limits,
+    sandbox: Option<Arc<Sandbox>>,
     opened: Mutex<HashMap<String, Opened>>,
 }
 
 impl Plugins {
     /// None yet; they will have these limits.
     pub fn new(limits: Limits) -> Self {
-        Self { limits, opened: Mutex::default() }
+        Self { limits, ..Self::default() }
+    }
+
+    /// None yet; those that are processes will run in this sandbox.
+    pub fn within(limits: Limits, sandbox: Sandbox) -> Self {
+        Self { limits, sandbox: Some(Arc::new(sandbox)), ..Self::default() }
     }
 
     /// What plugins may take.
@@ -41,25 +48,24 @@ impl Plugins {
             }
             _ => (name, None),
         };
-        let named = Named::of(file)?;
-        let plugin = match self.opened(file, &named) {
+        Some(self.model_of(name, file, &Named::of(file)?, wanted))
+    }
+
+    /// The model `wanted`, or the only one, of a plugin that is called `file`; the model
+    /// is called `name`.
+    pub fn model_of(
+        &self,
+        name: &str,
+        file: &str,
+        named: &Named,
+        wanted: Option<&str>,
+    ) -> Result<Model, String> {
+        let plugin = match self.opened(file, named) {
             Ok(plugin) => plugin,
-            Err(why) => return Some(Ok(broken(name, why))),
+            Err(why) => return Ok(broken(name, why)),
         };
-        let description = match plugin.hello.model(file, wanted) {
-            Ok(model) => model.clone(),
-            Err(why) => return Some(Err(format!("`{file}` {why}"))),
-        };
-        let (declaring, doc) = (description.clone(), description.doc.clone());
-        let called = name.to_string();
-        let model = Model::dynamic(name, doc, move |parameters| {
-            let made = Foreign::create(&plugin, &description, parameters_json(parameters));
-            Ok(match made {
-                Ok(subject) => Arc::new(subject) as Arc<dyn Subject>,
-                Err(why) => Arc::new(Broken { name: called.clone(), why }),
-            })
-        });
-        Some(Ok(declaring.declare(model)))
+        let description = plugin.hello.model(file, wanted).map_err(|why| format!("`{file}` {why}"))?.clone();
+        Ok(model_of(&plugin, &description, name))
     }
 
     /// The models of the plugin `file` and what they are, where it has several.
@@ -74,9 +80,34 @@ impl Plugins {
     }
 
     fn open(&self, file: &str, named: &Named) -> Opened {
-        let opened = named.route(&self.limits).and_then(|route| Plugin::open(file, route, &self.limits));
+        let opened = named
+            .route(&self.limits, self.sandbox.as_ref())
+            .and_then(|route| Plugin::open(file, route, &self.limits));
         opened.map(Arc::new).map_err(|fault| fault.to_string())
     }
+}
+
+/// The models that a plugin offers, each called as it calls them; a process is in `sandbox`.
+///
+/// # Errors
+/// Why it cannot be opened.
+pub fn offered(named: &Named, limits: &Limits, sandbox: &Arc<Sandbox>) -> Result<Vec<Model>, String> {
+    let opened = named.route(limits, Some(sandbox)).and_then(|route| Plugin::open("it", route, limits));
+    let plugin = Arc::new(opened.map_err(|fault| fault.to_string())?);
+    Ok(plugin.hello.models.iter().map(|model| model_of(&plugin, model, &model.name)).collect())
+}
+
+/// A model of a plugin, which is called so.
+fn model_of(plugin: &Arc<Plugin>, description: &ModelDescription, name: &str) -> Model {
+    let (plugin, declaring, called) = (plugin.clone(), description.clone(), name.to_string());
+    let model = Model::dynamic(name, description.doc.clone(), move |parameters| {
+        let made = Foreign::create(&plugin, &declaring, parameters_json(parameters));
+        Ok(match made {
+            Ok(subject) => Arc::new(subject) as Arc<dyn Subject>,
+            Err(why) => Arc::new(Broken { name: called.clone(), why }),
+        })
+    });
+    description.declare(model)
 }
 
 /// The model of a plugin that cannot be opened.

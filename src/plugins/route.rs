@@ -3,10 +3,12 @@
 use super::instance::{Fault, Instance};
 use super::library::Loaded;
 use super::limits::Limits;
-use super::process::{Child, Launch};
+use super::process::{Child, Launch, Program};
+use super::sandbox::Sandbox;
 use super::wasm::Module;
 use std::ffi::OsString;
 use std::path::{Path, PathBuf};
+use std::sync::Arc;
 
 /// How a plugin is reached.
 #[derive(Clone)]
@@ -67,12 +69,15 @@ impl Named {
         }
     }
 
-    /// The way there.
-    pub fn route(&self, limits: &Limits) -> Result<Route, Fault> {
+    /// The way there, into a sandbox if there is one. WebAssembly has its own.
+    pub fn route(&self, limits: &Limits, sandbox: Option<&Arc<Sandbox>>) -> Result<Route, Fault> {
+        let process = |program| Route::Process(Launch { program, sandbox: sandbox.cloned() });
         Ok(match self {
-            Self::Command(words) => Route::Process(Launch::Command(words.clone())),
-            Self::Library(path) if limits.in_process => Route::InProcess(Loaded::open(path)?),
-            Self::Library(path) => Route::Process(Launch::Library(path.clone())),
+            Self::Command(words) => process(Program::Command(words.clone())),
+            Self::Library(path) if limits.in_process && sandbox.is_none() => {
+                Route::InProcess(Loaded::open(path)?)
+            }
+            Self::Library(path) => process(Program::Library(path.clone())),
             Self::Wasm(path) => {
                 Route::Wasm(Module::open(path, limits).map_err(|e| Fault::Ended(e.to_string()))?)
             }

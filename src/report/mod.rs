@@ -9,12 +9,13 @@ mod formats;
 mod html;
 mod json;
 mod plots;
+mod record;
 mod saved;
 mod schema;
 #[cfg(test)]
 pub(crate) mod synthetic;
 mod terminal;
-mod visible;
+pub(crate) mod visible;
 mod wording;
 
 pub use build::Files;
@@ -31,6 +32,7 @@ pub use plots::{
     MatrixRow, Picture, Pictured, Which, albedo_curve, disc_picture, draw, p_value_histogram,
     pictures_of_case, pictures_of_subject, reciprocity_picture,
 };
+pub use record::{Recording, record};
 pub use saved::{FileError, evidence_path, read_evidence, write_evidence, write_whole};
 pub use schema::{schema, schema_text};
 pub use terminal::{Look, comparison, diagnoses, summary, symbol};

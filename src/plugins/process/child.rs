@@ -4,6 +4,7 @@ use super::last_words::LastWords;
 use super::launch::Launch;
 use crate::plugins::instance::{Call, Created, Fault, Instance};
 use crate::plugins::limits::{Limits, START};
+use crate::plugins::sandbox::{ENDED, VOICE};
 use crate::plugins::wire::{Reply, Request, Wire};
 use rustix::event::{PollFd, PollFlags, Timespec, poll};
 use rustix::io::Errno;
@@ -204,6 +205,11 @@ impl Child {
             }
         };
         self.listen();
+        if status.is_some_and(|s| s.code() == Some(ENDED))
+            && let Some(why) = self.said.take_line(VOICE)
+        {
+            return Fault::Ended(format!("it was ended for {why} in {what}{}", self.said.told()));
+        }
         let how = match status {
             Some(status) => manner(status),
             None => "closed its standard output and went on running".into(),

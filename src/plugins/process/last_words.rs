@@ -23,6 +23,15 @@ impl LastWords {
         }
     }
 
+    /// Takes the last line that begins with `voice` out of it, without that.
+    pub fn take_line(&mut self, voice: &str) -> Option<String> {
+        let text = String::from_utf8_lossy(&self.bytes).into_owned();
+        let lines: Vec<&str> = text.lines().collect();
+        let at = lines.iter().rposition(|line| line.starts_with(voice))?;
+        self.bytes = lines[..at].join("\n").into_bytes();
+        Some(lines[at][voice.len()..].to_string())
+    }
+
     /// As a message ends with it; empty if there is nothing.
     pub fn told(&self) -> String {
         let text = String::from_utf8_lossy(&self.bytes);
