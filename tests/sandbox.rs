@@ -8,4 +8,5 @@ mod desk;
 #[path = "sandbox/running.rs"]
 mod running;
 #[path = "common/tools.rs"]
+#[allow(dead_code)]
 mod tools;

@@ -1,7 +1,9 @@
 //! What may be typed.
 
 use super::formats::Outputs;
-use super::{calibrate, check, completions, diff, explain, figures, list, new, report, run, schema, worker};
+use super::{
+    calibrate, check, completions, diff, explain, figures, grade, list, new, report, run, schema, worker,
+};
 use crate::checks;
 use crate::registry::nearest;
 use crate::report::Which;
@@ -42,13 +44,15 @@ pub enum Command {
     Report(report::ReportArgs),
     /// Tell what got worse and what got better from one report to another.
     Diff(diff::DiffArgs),
+    /// Score submissions of a class by a rubric, with feedback and gradebooks.
+    Grade(grade::GradeArgs),
     /// Draw the figures of a lecture on reflection, from the built-in models.
     Figures(figures::FiguresArgs),
     /// Write a plugin to start from, in a language of your choice.
     New(new::NewArgs),
     /// Measure how far gonio's own verdicts can be trusted.
     Calibrate(calibrate::CalibrateArgs),
-    /// Print the JSON Schema of report.json.
+    /// Print the JSON Schema of report.json or grade.json.
     Schema(schema::SchemaArgs),
     /// Print completions for a shell.
     Completions(completions::CompletionsArgs),

@@ -10,15 +10,13 @@ use super::output::{emit, prove_writable, tell};
 use super::progress::Progress;
 use super::request::Request;
 use crate::comparison::compare;
-use crate::diagnosis::diagnose_all;
-use crate::engine::{self, Draws, Event, Options};
+use crate::engine::{Draws, Options};
 use crate::evidence::Meter;
 use crate::report::{
-    Carried, Diagnosis, FileError, Files, Look, REPORT, Report, draw_diagnoses, draw_results, evidence_of,
-    redraw, summary, write_evidence, write_report,
+    Carried, FileError, Look, REPORT, Recording, Report, record, redraw, summary, write_report,
 };
 use crate::suite::{Plan, reproduce};
-use std::collections::{BTreeMap, BTreeSet};
+use std::collections::BTreeSet;
 use std::path::{Path, PathBuf};
 use std::sync::Arc;
 use std::sync::atomic::{AtomicBool, Ordering};
@@ -103,9 +101,8 @@ fn run(
     if stop.load(Ordering::Relaxed) { Ok(Exit::Interrupted) } else { Ok(Exit::of(&report, request.strict)) }
 }
 
-/// Runs a plan and hands its results to the report: where the command line meets the
-/// engine. Evidence is written case by case, so that a run that is killed leaves what it
-/// had. With the report the first file that could not be written, which must not lose it.
+/// Runs a plan and hands its results to the report. With it the first file that could not
+/// be written, which must not lose it.
 fn measure(
     plan: &Plan<'static>,
     request: &Request,
@@ -114,46 +111,24 @@ fn measure(
     folder: Option<&Path>,
     carried: Carried,
 ) -> (Report, Result<(), FileError>) {
-    let left = (!carried.rows.is_empty()).then(|| carried.left(plan));
     let progress = Progress::new(plan, voice);
-    let started = jiff::Timestamp::now().to_string();
-    let (cases, draws) = (left, request.draws.clone());
-    let options = Options { threads: request.threads, stop: stop.clone(), deadline: None, cases, draws };
-    let mut files = Ok(());
-    let mut note = |result: Result<(), FileError>| {
-        if files.is_ok() {
-            files = result;
-        }
-    };
-    let results = engine::run(plan, &options, &mut |event| {
-        progress.observe(event);
-        if let (Event::CaseDone(case), Some(folder)) = (event, folder)
-            && let Some(evidence) = &case.evidence
-        {
-            note(write_evidence(folder, case.index, evidence).map(drop));
-        }
-    });
-    progress.finish();
-    let diagnosed = diagnose_all(&results, &request.explanations, &options);
-    let mut diagnoses = Diagnosis::all(&results, diagnosed);
-    let mut plots = BTreeMap::new();
-    if let Some(folder) = folder {
-        // Beside results that are taken over everything is drawn from evidence, once.
-        if let Some(which) = request.plots.which().filter(|_| carried.rows.is_empty()) {
-            note(draw_results(folder, &results, &diagnoses, which).map(|drawn| plots = drawn));
-            note(draw_diagnoses(folder, &mut diagnoses));
-        }
-        note(carried.write_evidence(folder));
-    }
     let program = program();
-    let about = Files {
-        command: &|case, check| reproduce(&program, plan, &case.case, results.share, check),
-        evidence: &|case| folder.and_then(|_| evidence_of(case)),
-        plot: &|case| plots.get(&case.index).cloned(),
+    let recording = Recording {
+        options: Options {
+            threads: request.threads,
+            stop: stop.clone(),
+            draws: request.draws.clone(),
+            ..Options::default()
+        },
+        explanations: &request.explanations,
+        folder,
+        pictures: request.plots.which(),
+        command: &|case, share, check| reproduce(&program, plan, &case.case, share, check),
         time_s: request.time_s,
     };
-    let report = Report::new(plan, &results, started, &about, carried).diagnosed(diagnoses);
-    (report, files)
+    let measured = record(plan, recording, carried, &mut |event| progress.observe(event));
+    progress.finish();
+    measured
 }
 
 /// Writes the report, and what else is asked for; the files beside it.

@@ -5,7 +5,7 @@ use super::error::CliError;
 use super::execute::execute;
 use super::exit::Exit;
 use super::output::tell;
-use super::{calibrate, completions, diff, explain, figures, list, new, report, schema, worker};
+use super::{calibrate, completions, diff, explain, figures, grade, list, new, report, schema, worker};
 use crate::plugins::set_gonio;
 use crate::registry::Registry;
 use clap::Parser;
@@ -52,6 +52,7 @@ fn obey(args: Args, registry: &Registry) -> Result<Exit, CliError> {
         Command::Explain(args) => explain::explain(&args),
         Command::Report(args) => report::report(&args, voice),
         Command::Diff(args) => diff::diff(&args, voice),
+        Command::Grade(args) => grade::grade(&args, registry, voice),
         Command::Figures(args) => figures::figures(&args, voice),
         Command::New(args) => new::new(&args, voice),
         Command::Calibrate(args) => calibrate::calibrate(&args, voice),

@@ -12,6 +12,7 @@ mod exit;
 mod explain;
 mod figures;
 mod formats;
+mod grade;
 mod interrupt;
 mod list;
 mod main;

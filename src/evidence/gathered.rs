@@ -138,6 +138,8 @@ pub struct Company<'a> {
     pub variants: Vec<Variant<'a>>,
     /// Another subject to compare with, and how it is written.
     pub reference: Option<(String, Arc<dyn Subject + 'a>)>,
+    /// The relative difference of values that counts as none there; rounding where `None`.
+    pub within: Option<f64>,
 }
 
 /// Gathers the evidence of one case; keeps what later looks need.
@@ -239,7 +241,7 @@ impl<'a> Gatherer<'a> {
         }
         if let (true, false, Some((name, other))) =
             (asked.contains(&M::Reference), self.is_over(), &company.reference)
-            && let Err(halt) = self.compare(name, &**other, draws)
+            && let Err(halt) = self.compare(name, &**other, company.within, draws)
         {
             self.halted(M::Reference, halt);
         }
@@ -371,11 +373,18 @@ impl<'a> Gatherer<'a> {
         self.pilot.wi.iter().map(|wi| chart.to_point(*wi)).collect()
     }
 
-    fn compare(&mut self, name: &str, other: &dyn Subject, draws: u64) -> Result<(), Halt> {
+    fn compare(
+        &mut self,
+        name: &str,
+        other: &dyn Subject,
+        within: Option<f64>,
+        draws: u64,
+    ) -> Result<(), Halt> {
         let description = Meter::describe(other)?;
         let claims: Claims = description.claims;
         let other = Meter::new(other, description, self.watch.clone());
-        let mut comparison = Comparison::gather(&self.meter, &self.setup, &self.pilot, &other, name)?;
+        let mut comparison =
+            Comparison::gather(&self.meter, &self.setup, &self.pilot, (name, &other), within)?;
         let in_distribution = comparison.table.is_none() && other.description.has.pdf;
         if let (Some(partition), true) = (&self.evidence.partition, in_distribution) {
             let pilot = self.pilot_points(partition.chart());

@@ -240,12 +240,12 @@ pub fn two_sided(meter: &Meter, setup: &Setup, pilot: &Pilot) -> Result<Tally, H
     if meter.description.has.eval {
         meter.eval(setup.wo, &wi, setup.transport, &mut a)?;
         meter.eval(setup.wo.flipped(), &flipped, setup.transport, &mut b)?;
-        compare(&mut tally, setup, &wi, ["eval", "from the other side"], &a, &b);
+        compare(&mut tally, (setup.wo, setup.floor()), &wi, ["eval", "from the other side"], &a, &b);
     }
     if meter.description.has.pdf {
         meter.pdf(setup.wo, &wi, setup.transport, &mut a)?;
         meter.pdf(setup.wo.flipped(), &flipped, setup.transport, &mut b)?;
-        compare(&mut tally, setup, &wi, ["pdf", "from the other side"], &a, &b);
+        compare(&mut tally, (setup.wo, setup.floor()), &wi, ["pdf", "from the other side"], &a, &b);
     }
     Ok(tally)
 }
@@ -310,19 +310,22 @@ pub struct Comparison {
 }
 
 impl Comparison {
-    /// Compares values at many directions; masses are integrated elsewhere.
+    /// Compares values at many directions with another subject, which is written so; masses
+    /// are integrated elsewhere. `within` is the relative difference that counts as none, in
+    /// place of rounding.
     pub fn gather(
         meter: &Meter,
         setup: &Setup,
         pilot: &Pilot,
-        other: &Meter,
-        name: &str,
+        (name, other): (&str, &Meter),
+        within: Option<f64>,
     ) -> Result<Self, Halt> {
+        let tolerance = within.unwrap_or(setup.tolerance());
         let mut found = Self {
             name: name.into(),
-            eval: Tally::new(setup.tolerance()),
-            pdf: Tally::new(setup.tolerance()),
-            discrete: Tally::new(setup.tolerance()),
+            eval: Tally::new(tolerance),
+            pdf: Tally::new(tolerance),
+            discrete: Tally::new(tolerance),
             ..Self::default()
         };
         if other.channels() != meter.channels() {
@@ -346,15 +349,20 @@ impl Comparison {
             return Ok(found);
         }
         let wi = probes::off_edges(meter, setup, probes::directions(setup, pilot, 4 * ROWS))?;
+        // What is compared loosely is compared where there is something.
+        let floor = |reference: &[f64]| {
+            let largest = reference.iter().copied().filter(|v| v.is_finite()).fold(0.0, f64::max);
+            setup.floor().max(within.map_or(0.0, |_| NOTHING * largest))
+        };
         if meter.description.has.eval && other.description.has.eval {
             meter.eval(setup.wo, &wi, setup.transport, &mut a)?;
             other.eval(setup.wo, &wi, setup.transport, &mut b)?;
-            compare(&mut found.eval, setup, &wi, ["eval", "reference"], &a, &b);
+            compare(&mut found.eval, (setup.wo, floor(&b)), &wi, ["eval", "reference"], &a, &b);
         }
         if meter.description.has.pdf && other.description.has.pdf {
             meter.pdf(setup.wo, &wi, setup.transport, &mut a)?;
             other.pdf(setup.wo, &wi, setup.transport, &mut b)?;
-            compare(&mut found.pdf, setup, &wi, ["pdf", "reference"], &a, &b);
+            compare(&mut found.pdf, (setup.wo, floor(&b)), &wi, ["pdf", "reference"], &a, &b);
         }
         if meter.description.has.sample && other.description.has.sample {
             let theirs = discrete_lobes(other, setup)?;
@@ -376,11 +384,22 @@ impl Comparison {
     }
 }
 
-fn compare(tally: &mut Tally, setup: &Setup, wi: &[Direction], names: [&str; 2], a: &[f64], b: &[f64]) {
+/// Values below this part of the largest are nothing where the suite compares loosely: what
+/// is cut off there, or lost to cancellation, no picture shows.
+const NOTHING: f64 = 1e-6;
+
+fn compare(
+    tally: &mut Tally,
+    (wo, floor): (Direction, f64),
+    wi: &[Direction],
+    names: [&str; 2],
+    a: &[f64],
+    b: &[f64],
+) {
     let width = (a.len() / wi.len().max(1)).max(1);
     for (k, (a, b)) in a.iter().zip(b).enumerate() {
-        tally.look(relative_error(*a, *b, setup.floor()), || {
-            Place::pair(setup.wo, wi[k / width]).value(names[0], *a).value(names[1], *b)
+        tally.look(relative_error(*a, *b, floor), || {
+            Place::pair(wo, wi[k / width]).value(names[0], *a).value(names[1], *b)
         });
     }
 }

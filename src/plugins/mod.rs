@@ -20,7 +20,7 @@ pub use conventions::{Conventions, Failure, Frame, Given, Up, Weight};
 pub use instance::{Call, Created, Fault, Function, Instance};
 pub use library::work;
 pub use limits::Limits;
-pub use open::Plugins;
+pub use open::{Plugins, offered};
 pub use process::{Launch, Program, in_path, set_gonio, supervise};
 pub use route::{Named, Route};
 pub use sandbox::{

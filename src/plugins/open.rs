@@ -1,6 +1,6 @@
 //! From a name to the model of a plugin.
 
-use super::description::parameters_json;
+use super::description::{ModelDescription, parameters_json};
 use super::limits::Limits;
 use super::plugin::Plugin;
 use super::route::Named;
@@ -65,16 +65,7 @@ impl Plugins {
             Err(why) => return Ok(broken(name, why)),
         };
         let description = plugin.hello.model(file, wanted).map_err(|why| format!("`{file}` {why}"))?.clone();
-        let (declaring, doc) = (description.clone(), description.doc.clone());
-        let called = name.to_string();
-        let model = Model::dynamic(name, doc, move |parameters| {
-            let made = Foreign::create(&plugin, &description, parameters_json(parameters));
-            Ok(match made {
-                Ok(subject) => Arc::new(subject) as Arc<dyn Subject>,
-                Err(why) => Arc::new(Broken { name: called.clone(), why }),
-            })
-        });
-        Ok(declaring.declare(model))
+        Ok(model_of(&plugin, &description, name, true))
     }
 
     /// The models of the plugin `file` and what they are, where it has several.
@@ -94,6 +85,30 @@ impl Plugins {
             .and_then(|route| Plugin::open(file, route, &self.limits));
         opened.map(Arc::new).map_err(|fault| fault.to_string())
     }
+}
+
+/// The models that a plugin offers, each called as it calls them; a process is in `sandbox`.
+/// They are held to the conventions that they declare: what contradicts them is a mistake.
+///
+/// # Errors
+/// Why it cannot be opened.
+pub fn offered(named: &Named, limits: &Limits, sandbox: &Arc<Sandbox>) -> Result<Vec<Model>, String> {
+    let opened = named.route(limits, Some(sandbox)).and_then(|route| Plugin::open("it", route, limits));
+    let plugin = Arc::new(opened.map_err(|fault| fault.to_string())?);
+    Ok(plugin.hello.models.iter().map(|model| model_of(&plugin, model, &model.name, false)).collect())
+}
+
+/// A model of a plugin, which is called so; its conventions are `probed`.
+fn model_of(plugin: &Arc<Plugin>, description: &ModelDescription, name: &str, probed: bool) -> Model {
+    let (plugin, declaring, called) = (plugin.clone(), description.clone(), name.to_string());
+    let model = Model::dynamic(name, description.doc.clone(), move |parameters| {
+        let made = Foreign::create(&plugin, &declaring, parameters_json(parameters), probed);
+        Ok(match made {
+            Ok(subject) => Arc::new(subject) as Arc<dyn Subject>,
+            Err(why) => Arc::new(Broken { name: called.clone(), why }),
+        })
+    });
+    description.declare(model)
 }
 
 /// The model of a plugin that cannot be opened.

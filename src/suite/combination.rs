@@ -112,6 +112,7 @@ impl Combinations {
             company: Company {
                 variants: variants(registry, model, &parameters),
                 reference: reference.clone(),
+                within: None,
             },
             parameters,
             subject,

@@ -30,6 +30,9 @@ pub fn digests(plan: &Plan, samples: bool) -> BTreeMap<(String, String), String>
         settings.samples = if samples { settings.samples } else { 0 };
         let measured = (case.theta_deg, case.phi_deg, case.transport, &case.checks, &case.waivers, settings);
         add(hasher, format!("{measured:?}").as_bytes());
+        if let Some(within) = case.company.within {
+            add(hasher, &within.to_le_bytes());
+        }
     }
     let hex = |hasher: blake3::Hasher| hasher.finalize().to_hex()[..DIGITS].to_string();
     open.into_iter().map(|(key, hasher)| (key, hex(hasher))).collect()

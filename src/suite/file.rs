@@ -195,7 +195,7 @@ impl SuiteFile {
                 }
                 ("suite" | "subject", _) => {
                     let wanted = if key == "suite" { "a table: [suite]" } else { "tables: [[subject]]" };
-                    let _: Option<()> = reader.wrong_type(key, value, wanted);
+                    reader.refuse(key, value, wanted);
                 }
                 _ => reader.unknown(span, "table of a suite", key, &["suite", "subject"]),
             }
@@ -283,7 +283,7 @@ impl SuiteFile {
 
     fn read_subject(&mut self, reader: &mut Reader, item: &Node) {
         let DeValue::Table(table) = item.get_ref() else {
-            let _: Option<()> = reader.wrong_type("subject", item, "tables: [[subject]]");
+            reader.refuse("subject", item, "tables: [[subject]]");
             return;
         };
         let ways: Vec<_> = entries(table).into_iter().filter(|(key, ..)| ROUTES.contains(key)).collect();
@@ -523,7 +523,7 @@ fn cover(reader: &mut Reader, value: &Node) -> Option<Cover> {
     Some(if reader.word("cover", value, &["all", "pairs"])? == "all" { Cover::All } else { Cover::Pairs })
 }
 
-pub(super) fn check_id(reader: &mut Reader, key: &str, value: &Node) -> Option<String> {
+pub(crate) fn check_id(reader: &mut Reader, key: &str, value: &Node) -> Option<String> {
     let text = reader.text(key, value)?;
     if checks::find(text.get_ref()).is_none() {
         let known: Vec<_> = checks::all().iter().map(|c| c.id()).collect();

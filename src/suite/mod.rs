@@ -25,3 +25,11 @@ pub use plan::{Case, Plan, Settings, Source, Waiver};
 pub use promises::set_claim;
 pub use reader::{azimuth, count, fraction, polar, positive};
 pub use reproduce::reproduce;
+
+/// Typed reading of TOML with its places, for the other files that people write.
+pub(crate) mod toml_reader {
+    pub(crate) use super::file::check_id;
+    pub(crate) use super::promises::claims;
+    pub(crate) use super::reader::{Node, Reader, entries};
+}
+pub(crate) use variants::variants;

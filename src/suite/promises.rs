@@ -12,7 +12,7 @@ use toml::Spanned;
 use toml::de::DeValue;
 
 /// The claims of an entry.
-pub(super) fn claims(reader: &mut Reader, value: &Node) -> ClaimsPatch {
+pub(crate) fn claims(reader: &mut Reader, value: &Node) -> ClaimsPatch {
     let mut patch = ClaimsPatch::default();
     let DeValue::Table(table) = value.get_ref() else {
         let wanted = "a table as { reciprocal = false }";
@@ -67,7 +67,7 @@ pub(super) fn waivers(reader: &mut Reader, value: &Node, today: Date) -> Vec<Wai
     let mut all: Vec<Waiver> = Vec::new();
     for item in reader.items("waive", value).unwrap_or_default() {
         let DeValue::Table(table) = item.get_ref() else {
-            let _: Option<()> = reader.wrong_type("waive", item, "{ check = \"ID\", because = \"REASON\" }");
+            reader.refuse("waive", item, "{ check = \"ID\", because = \"REASON\" }");
             continue;
         };
         let mut waiver = Waiver::default();

@@ -7,11 +7,11 @@ use std::ops::Range;
 use toml::Spanned;
 use toml::de::{DeTable, DeValue};
 
-pub(super) type Node<'t> = Spanned<DeValue<'t>>;
+pub(crate) type Node<'t> = Spanned<DeValue<'t>>;
 
 /// Collects mistakes while values are read.
 #[derive(Default)]
-pub(super) struct Reader {
+pub(crate) struct Reader {
     pub mistakes: Vec<Mistake>,
 }
 
@@ -88,7 +88,7 @@ fn float(value: &DeValue) -> Option<f64> {
 }
 
 /// The entries of a table in the order of the text.
-pub(super) fn entries<'a, 't>(table: &'a DeTable<'t>) -> Vec<(&'a str, Range<usize>, &'a Node<'t>)> {
+pub(crate) fn entries<'a, 't>(table: &'a DeTable<'t>) -> Vec<(&'a str, Range<usize>, &'a Node<'t>)> {
     let mut all: Vec<_> = table.iter().map(|(k, v)| (k.get_ref().as_ref(), k.span(), v)).collect();
     all.sort_by_key(|(_, span, _)| span.start);
     all
@@ -108,6 +108,11 @@ impl Reader {
             format!("this is {found}"),
         ));
         None
+    }
+
+    /// As [`wrong_type`](Self::wrong_type), where nothing is made of the value.
+    pub fn refuse(&mut self, key: &str, value: &Node, wanted: &str) {
+        let _: Option<()> = self.wrong_type(key, value, wanted);
     }
 
     /// Notes an unknown name among `known`.

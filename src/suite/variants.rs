@@ -5,7 +5,7 @@ use crate::registry::{Kind, Model, Parameter, Parameters, Registry, Role, Value}
 use std::sync::Arc;
 
 /// For each parameter that applies: other values, and its limit if it has one.
-pub(super) fn variants(registry: &Registry, model: &Model, parameters: &Parameters) -> Vec<Variant<'static>> {
+pub(crate) fn variants(registry: &Registry, model: &Model, parameters: &Parameters) -> Vec<Variant<'static>> {
     let mut all = Vec::new();
     let matters = |p: &&Parameter| p.applies(parameters) && !p.idle;
     for parameter in model.parameters().iter().filter(matters) {
