@@ -2,7 +2,9 @@
 
 use crate::desk::{Desk, text};
 use crate::tools::tools;
-use gonio::plugins::{Fault, Isolation};
+use gonio::plugins::{Fault, Isolation, Program};
+use std::io::Read;
+use std::process::Stdio;
 use std::time::{Duration, Instant};
 
 /// The library that does `deed` lives, has the value of one that got nothing, and these
@@ -185,6 +187,21 @@ fn a_program_that_is_not_there() {
     let why = desk.command(&["no-such-program"]).unwrap_err().to_string();
     assert!(why.contains("there is no program `no-such-program` in PATH"), "{why}");
     desk.told(&[]);
+}
+
+#[test]
+fn nothing_outlives_its_guard() {
+    let desk = Desk::new(&[]);
+    let words = ["sh", "-c", "echo runs; sleep 100"].map(Into::into).to_vec();
+    let mut command = desk.sandbox.command(&Program::Command(words), &desk.limits).unwrap();
+    let pipes = command.stdin(Stdio::null()).stdout(Stdio::piped()).stderr(Stdio::piped());
+    let mut guard = pipes.spawn().unwrap();
+    let mut said = [0; 5];
+    guard.stdout.take().unwrap().read_exact(&mut said).unwrap();
+    assert_eq!(&said, b"runs\n");
+    guard.kill().unwrap();
+    guard.wait().unwrap();
+    let _ = desk.incidents();
 }
 
 #[test]

@@ -63,7 +63,9 @@ static int does(const char *deed) {
     if (!strcmp(deed, "results"))
         return writes("/autograder/results/results.json") + writes("results.json") + writes("../results.json") +
                writes("/results.json") + writes("/usr/results.json") + writes("/dev/shm/results.json");
-    if (!strcmp(deed, "sysctl")) return writes("/proc/sys/kernel/core_pattern") + writes("/proc/self/oom_score_adj");
+    /* Only opened: where the sandbox is broken, this must not change the machine. */
+    if (!strcmp(deed, "sysctl"))
+        return open("/proc/sys/kernel/core_pattern", O_WRONLY) >= 0 || open("/proc/self/oom_score_adj", O_WRONLY) >= 0;
     if (!strcmp(deed, "fork")) {
         for (k = 0; k < 100; k++) {
             pid_t pid = fork();
