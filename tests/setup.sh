@@ -1,7 +1,7 @@
 #!/bin/sh
 # What the tests need beside Rust: C and C++ compilers, clang with its linker for
-# WebAssembly, bubblewrap, Chromium with its driver, and Python with numpy, pytest, selenium, axe-core
-# and sdk/python under TARGET/venv. Installs what is missing and says nothing where all is
+# WebAssembly, bubblewrap, Chromium with its driver, and Python with numpy, pytest, selenium,
+# axe-core and sdk/python under TARGET/venv. Installs what is missing and says nothing where all is
 # there; the tests call it themselves.
 #
 #     tests/setup.sh [TARGET]        the build folder: $CARGO_TARGET_DIR or target

@@ -159,7 +159,7 @@ pub fn text(name: &str) -> String {
 fn library() -> &'static Path {
     static BUILT: OnceLock<PathBuf> = OnceLock::new();
     BUILT.get_or_init(|| {
-        let built = Path::new(env!("CARGO_TARGET_TMPDIR")).join("sandbox-hostile.so");
+        let built = tools().target.join("sandbox-hostile.so");
         let cc = Command::new("cc")
             .args(["-O1", "-w", "-shared", "-fPIC", "-pthread", "-o"])
             .args([&built, &data("hostile.c")])

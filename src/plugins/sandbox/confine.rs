@@ -28,6 +28,9 @@ pub const BEGINS: &str = "begins";
 /// Open files of a process.
 const FILES: u64 = 256;
 
+/// Bytes of a file beyond what files may take.
+const ROOM: u64 = 1 << 20;
+
 /// Seconds after which the kernel ends a process that the guard has not ended.
 const GRACE: u64 = 2;
 
@@ -60,13 +63,16 @@ fn begin(rules: &Rules) -> io::Result<()> {
     let limit = |resource, most| setrlimit(resource, Rlimit { current: Some(most), maximum: Some(most) });
     limit(Resource::Core, 0)?;
     limit(Resource::Nofile, FILES)?;
-    limit(Resource::Fsize, rules.disk)?;
+    // A little more than there is room for in a sandbox's own file systems, where the guard
+    // tells of it.
+    limit(Resource::Fsize, rules.disk + ROOM)?;
     if let Some(seconds) = rules.processor {
         limit(Resource::Cpu, seconds + GRACE)?;
     }
     set_no_new_privs(true)?;
-    // Last, since this program needs memory too.
-    limit(Resource::As, rules.memory)?;
+    // Last, since this program needs memory too. More than the guard allows of what is used,
+    // so that it is the guard that tells.
+    limit(Resource::As, rules.memory + rules.memory / 2)?;
     match watched(rules) {
         Ok(None) => send(rustix::stdio::stdin(), BEGINS, &[])?,
         Ok(Some(listener)) => send(rustix::stdio::stdin(), BEGINS, &[listener.as_fd()])?,

@@ -94,7 +94,7 @@ fn by_signal(signal: i32) -> Option<&'static str> {
     match signal {
         libc::SIGSYS => Some("called the system by another architecture's door"),
         libc::SIGXCPU => Some("was ended for its processor time"),
-        libc::SIGXFSZ => Some("was ended for the size of a file"),
+        libc::SIGXFSZ => Some("was ended for a file that is too large"),
         _ => None,
     }
 }
@@ -223,11 +223,9 @@ impl Guard<'_> {
                 let _ = writeln!(io::stderr(), "\n{VOICE}{why}");
                 return None;
             }
-            if count {
-                if self.written.elapsed() >= WRITE {
-                    self.log.flush();
-                    self.written = Instant::now();
-                }
+            if self.written.elapsed() >= WRITE {
+                self.log.flush();
+                self.written = Instant::now();
             }
         }
     }

@@ -13,7 +13,7 @@ pub struct Rules {
     pub library: bool,
     /// Whether its calls of the system are watched.
     pub watched: bool,
-    /// Bytes: address space of a process, memory of all.
+    /// Bytes of memory of all; half more of a process's address space.
     pub memory: u64,
     /// Seconds of processor time of all.
     pub processor: Option<u64>,

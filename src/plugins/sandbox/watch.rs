@@ -12,6 +12,7 @@ use super::taken::Where;
 use std::collections::HashMap;
 use std::fs::File;
 use std::io;
+use std::net::SocketAddr;
 use std::os::fd::{AsFd, BorrowedFd, OwnedFd};
 use std::os::unix::ffi::OsStringExt;
 use std::os::unix::fs::{FileExt, MetadataExt};
@@ -147,9 +148,8 @@ impl Watch {
                 refuse(libc::EPERM, format!("opened a socket ({family})"))
             }
             About::Connect => {
-                // Two bytes of family stand before the path; an abstract one begins with a zero.
-                let path = caller.text(arguments[1].wrapping_add(2)).filter(|path| !path.contains("nscd"));
-                go_on(path.map(|path| format!("connected to {path}")))
+                let to = caller.address(arguments[1], arguments[2]).filter(|to| !to.contains("nscd"));
+                go_on(to.map(|to| format!("connected to {to}")))
             }
             About::Signal(words) => {
                 let (to, signal) = (arguments[0] as i32, arguments[words] as i32);
@@ -243,9 +243,29 @@ impl Caller<'_> {
         Some([last("NStgid:")?, last("NSpid:")?])
     }
 
-    /// A string in the caller's memory, for people.
-    fn text(&self, address: u64) -> Option<String> {
-        self.bytes(address).map(|bytes| String::from_utf8_lossy(&bytes).into_owned())
+    /// The address of a socket (struct sockaddr_…) in the caller's memory.
+    fn address(&self, at: u64, length: u64) -> Option<String> {
+        let mut all = [0; 110];
+        let all = &mut all[..(length as usize).min(110)];
+        self.memory().ok()?.read_exact_at(all, at).ok()?;
+        let family = u16::from_ne_bytes(all.get(..2)?.try_into().ok()?);
+        let port = || Some(u16::from_be_bytes(all.get(2..4)?.try_into().ok()?));
+        match i32::from(family) {
+            libc::AF_UNIX => {
+                // An abstract name begins with a zero.
+                let name = all[2..].split(|byte| *byte == 0).find(|part| !part.is_empty())?;
+                Some(String::from_utf8_lossy(name).into_owned())
+            }
+            libc::AF_INET => {
+                let ip = <[u8; 4]>::try_from(all.get(4..8)?).ok()?;
+                Some(SocketAddr::from((ip, port()?)).to_string())
+            }
+            libc::AF_INET6 => {
+                let ip = <[u8; 16]>::try_from(all.get(8..24)?).ok()?;
+                Some(SocketAddr::from((ip, port()?)).to_string())
+            }
+            _ => None,
+        }
     }
 
     /// A string in the caller's memory.
