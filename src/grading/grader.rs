@@ -4,13 +4,14 @@ use super::building::Prepared;
 use super::grade::{Broken, GRADE_VERSION, Grade};
 use super::kept::{Kept, State};
 use super::plan::{Measurement, SOLUTION};
-use super::rubric::Rubric;
+use super::rubric::{Item, Rubric};
 use super::score::{Measured, score, total};
 use super::submissions::Submission;
 use crate::diagnosis::Explanation;
 use crate::engine::{Draws, Options};
 use crate::registry::Registry;
 use crate::report::{Carried, Diagnosis, FileError, Recording, Report, record, write_report};
+use crate::suite::{Case, Plan};
 use std::path::Path;
 use std::sync::Arc;
 use std::sync::atomic::{AtomicBool, Ordering};
@@ -136,12 +137,7 @@ impl Grader {
         state: State,
         kept: Option<Kept>,
     ) -> Result<Graded, Failure> {
-        let solution = self.solution.as_ref().map(|(_, registry)| registry);
-        let planned = prepared.open(&self.rubric).and_then(|registry| {
-            let plan = self.measurement.plan(&self.rubric, &registry, solution, &self.registry);
-            plan.map_err(|why| Broken { why, said: String::new() })
-        });
-        let plan = match planned {
+        let plan = match self.planned(prepared) {
             Ok(plan) => plan,
             Err(why) => {
                 Kept::forget(folder)?;
@@ -183,6 +179,46 @@ impl Grader {
         let mut grade = Grade { diagnoses, ..self.of_prepared(submission, prepared, &measured) };
         grade.review.extend(report.partial.clone());
         finish(folder, state, grade, Some(report), true)
+    }
+
+    /// Measures the cases of one item again, by its checks alone; nothing is written. `Err`
+    /// within is the submission's fault.
+    ///
+    /// # Errors
+    /// What is not.
+    pub fn examine(&self, submission: &Submission, item: &str) -> Result<Result<Report, Broken>, Failure> {
+        let items = self.rubric.items.iter().zip(&self.measurement.of_item);
+        let own: Vec<(&Item, &Vec<usize>)> = items.filter(|(i, _)| i.id == item).collect();
+        let prepared = match Prepared::new(&self.rubric, submission)? {
+            Ok(prepared) => prepared,
+            Err(why) => return Ok(Err(why)),
+        };
+        let mut plan = match self.planned(&prepared) {
+            Ok(plan) => plan,
+            Err(why) => return Ok(Err(why)),
+        };
+        let cases = plan.cases.iter().enumerate().filter_map(|(index, case)| {
+            let (item, _) = own.iter().find(|(_, cases)| cases.contains(&index))?;
+            Some(Arc::new(Case { checks: item.checks.clone(), ..(**case).clone() }))
+        });
+        plan.cases = cases.collect();
+        let recording = Recording {
+            options: Options { stop: self.wishes.stop.clone(), ..Options::default() },
+            explanations: &self.wishes.explanations,
+            folder: None,
+            pictures: None,
+            command: &|_, _, _| (self.wishes.command)(&submission.id, item),
+            time_s: None,
+        };
+        Ok(Ok(record(&plan, recording, Carried::default(), &mut |_| {}).0))
+    }
+
+    /// Builds and opens a submission, and plans what is measured of it.
+    fn planned(&self, prepared: &Prepared) -> Result<Plan<'static>, Broken> {
+        let solution = self.solution.as_ref().map(|(_, registry)| registry);
+        let registry = prepared.open(&self.rubric)?;
+        let plan = self.measurement.plan(&self.rubric, &registry, solution, &self.registry);
+        plan.map_err(|why| Broken { why, said: String::new() })
     }
 
     /// A grade from what was measured before.

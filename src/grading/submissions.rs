@@ -24,9 +24,9 @@ pub struct Submission {
 
 /// What was found, and what was passed over with the reason.
 #[derive(Debug, Default)]
-pub struct Found {
+pub struct Submissions {
     /// By id.
-    pub submissions: Vec<Submission>,
+    pub all: Vec<Submission>,
     /// In sentences.
     pub passed_over: Vec<String>,
 }
@@ -35,8 +35,8 @@ pub struct Found {
 ///
 /// # Errors
 /// In a sentence: a path that cannot be read, two of one id, none at all.
-pub fn find(paths: &[PathBuf], rubric: &Rubric) -> Result<Found, String> {
-    let mut found = Found::default();
+pub fn find(paths: &[PathBuf], rubric: &Rubric) -> Result<Submissions, String> {
+    let mut found = Submissions::default();
     for path in paths {
         let unreadable = |e: io::Error| format!("{} cannot be read: {e}", path.display());
         if is_zip(path) || path.is_dir() && is_submission(path, rubric) {
@@ -55,15 +55,15 @@ pub fn find(paths: &[PathBuf], rubric: &Rubric) -> Result<Found, String> {
             }
         }
     }
-    found.submissions.sort_by(|a, b| a.id.cmp(&b.id));
-    if let Some(pair) = found.submissions.windows(2).find(|pair| pair[0].id == pair[1].id) {
+    found.all.sort_by(|a, b| a.id.cmp(&b.id));
+    if let Some(pair) = found.all.windows(2).find(|pair| pair[0].id == pair[1].id) {
         let [a, b] = [&pair[0], &pair[1]].map(|s| s.path.display().to_string());
         return Err(format!(
             "`{}` is the id of {a} and of {b}: give `id` in [submissions] what tells them apart",
             pair[0].id
         ));
     }
-    if found.submissions.is_empty() {
+    if found.all.is_empty() {
         let places: Vec<String> = paths.iter().map(|p| p.display().to_string()).collect();
         let passed: String = found.passed_over.iter().map(|why| format!("; {why}")).collect();
         return Err(format!("no submission in {}{passed}", places.join(", ")));
@@ -80,7 +80,7 @@ fn is_submission(folder: &Path, rubric: &Rubric) -> bool {
     rubric.languages.iter().any(|language| folder.join(&language.when).is_file())
 }
 
-impl Found {
+impl Submissions {
     fn add(&mut self, path: &Path, rubric: &Rubric) {
         // `.` has a name of its own.
         let real = path.canonicalize().unwrap_or_else(|_| path.into());
@@ -94,11 +94,9 @@ impl Found {
         let group = |name: &str| captures.name(name).map_or("", |m| m.as_str()).to_string();
         let names: BTreeMap<String, String> =
             rubric.pattern.capture_names().flatten().map(|n| (n.to_string(), group(n))).collect();
-        let mut id = rubric.id.clone().unwrap_or(name);
-        for (name, value) in &names {
-            id = id.replace(&format!("{{{name}}}"), value);
-        }
-        self.submissions.push(Submission { id: plain(&id), names, path: path.into() });
+        let value = |name: &str| names.get(name).cloned().unwrap_or_default();
+        let id = rubric.id.as_ref().map_or(name, |template| template.fill(value));
+        self.all.push(Submission { id: plain(&id), names, path: path.into() });
     }
 }
 

@@ -100,7 +100,7 @@ pub fn direction(wo: WoAngles) -> String {
 }
 
 /// At most four decimals, and no zeros at their end.
-fn tidy(value: f64) -> String {
+pub fn tidy(value: f64) -> String {
     let text = format!("{value:.4}");
     minus(text.trim_end_matches('0').trim_end_matches('.').to_string())
 }

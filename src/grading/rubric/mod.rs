@@ -7,4 +7,4 @@ mod terms;
 mod tests;
 
 pub use read::load;
-pub use terms::{Credit, Export, Item, Language, Route, Rubric, SandboxTerms};
+pub use terms::{Credit, Item, Language, Route, Rubric, SandboxTerms};

@@ -1,9 +1,10 @@
 //! A rubric from its files, with every mistake of each at once.
 
 use super::read_item::{Terms, read_item};
-use super::terms::{Export, FIELDS, Item, Language, Route, Rubric, SandboxTerms};
+use super::terms::{Item, Language, Route, Rubric, SandboxTerms};
 use crate::bsdf::Precision;
 use crate::grading::ItemKind;
+use crate::grading::output::{Export, Template, placeholders};
 use crate::plugins::Limits;
 use crate::suite::toml_reader::{Node, Reader, claims, entries};
 use crate::suite::{FALSE_ALARM, Mistake, SEED, SuiteError, fraction, mebibytes, time_limit};
@@ -54,13 +55,17 @@ pub fn load(path: &Path, with_hidden: bool) -> Result<Rubric, SuiteError> {
     let mut file = File::new(path);
     let table = parse(path, &text)?;
     file.read(table.get_ref());
-    let hidden = file.hidden.take();
+    let (hidden, exports) = (file.hidden.take(), std::mem::take(&mut file.exports));
     file.rubric.hidden_path = hidden.as_ref().map(|named| file.folder.join(named.get_ref()));
     file.rubric.limits = file.terms.limits();
     file.check_whole(table.span());
     let (mut rubric, terms) = file.finish(path, &text)?;
-    if let (true, Some(hidden)) = (with_hidden, hidden) {
-        read_hidden(&mut rubric, terms, &hidden, (path, &text))?;
+    if let (true, Some(hidden)) = (with_hidden, &hidden) {
+        read_hidden(&mut rubric, terms, hidden, (path, &text))?;
+    }
+    if rubric.hidden || hidden.is_none() {
+        rubric.exports = exports_of(&rubric, exports)
+            .map_err(|mistakes| SuiteError::new(&path.display().to_string(), &text, mistakes))?;
     }
     Ok(rubric)
 }
@@ -134,6 +139,7 @@ struct File {
     rubric: Rubric,
     terms: Terms,
     hidden: Option<Spanned<String>>,
+    exports: Vec<Columns>,
     folder: PathBuf,
 }
 
@@ -160,7 +166,14 @@ impl File {
             exports: Vec::new(),
         };
         let folder = path.parent().unwrap_or(Path::new("")).into();
-        Self { reader: Reader::default(), rubric, terms: Terms::default(), hidden: None, folder }
+        Self {
+            reader: Reader::default(),
+            rubric,
+            terms: Terms::default(),
+            hidden: None,
+            exports: Vec::new(),
+            folder,
+        }
     }
 
     fn read(&mut self, table: &DeTable) {
@@ -168,7 +181,6 @@ impl File {
         if let Some(DeValue::Table(table)) = table.get("rubric").map(Spanned::get_ref) {
             self.read_rubric(table);
         }
-        let mut exports = Vec::new();
         for (key, span, value) in entries(table) {
             match (key, value.get_ref()) {
                 ("rubric", DeValue::Table(_)) => {}
@@ -182,8 +194,7 @@ impl File {
                         self.rubric.items.extend(found);
                     }
                 }
-                // Columns may name items, wherever those stand.
-                ("export", DeValue::Array(list)) => exports.extend(list.iter()),
+                ("export", DeValue::Array(list)) => list.iter().for_each(|node| self.read_export(node)),
                 ("language" | "item" | "export", _) => {
                     self.reader.refuse(key, value, &format!("tables: [[{key}]]"));
                 }
@@ -193,7 +204,6 @@ impl File {
                 _ => self.reader.unknown(span, "table of a rubric", key, &TABLES),
             }
         }
-        exports.into_iter().for_each(|node| self.read_export(node));
     }
 
     fn read_rubric(&mut self, table: &DeTable) {
@@ -240,9 +250,12 @@ impl File {
             }
         }
         if let Some(id) = id {
-            let known: Vec<&str> = self.rubric.pattern.capture_names().flatten().collect();
-            check_template(&mut self.reader, &id, &known, false);
-            self.rubric.id = Some(id.into_inner());
+            let known: Vec<String> =
+                self.rubric.pattern.capture_names().flatten().map(String::from).collect();
+            match Template::parse(id.get_ref(), &known) {
+                Ok(template) => self.rubric.id = Some(template),
+                Err(why) => self.reader.note(Mistake::new(id.span(), why, "here")),
+            }
         }
     }
 
@@ -351,21 +364,16 @@ impl File {
             return self.reader.refuse("export", node, "tables: [[export]]");
         };
         let reader = &mut self.reader;
-        let groups = self.rubric.pattern.capture_names().flatten().map(String::from);
-        let mut known: Vec<String> = FIELDS.map(String::from).into_iter().chain(groups).collect();
-        known.extend(self.rubric.items.iter().map(|item| format!("items.{}", item.id)));
-        let known: Vec<&str> = known.iter().map(String::as_str).collect();
         let (mut file, mut columns) = (None, Vec::new());
         for (key, span, value) in entries(table) {
             match (key, value.get_ref()) {
-                ("file", _) => file = inside(reader, key, value),
+                ("file", _) => file = reader.text(key, value),
                 ("columns", DeValue::Table(table)) => {
                     for (name, _, value) in entries(table) {
                         // A column may be empty.
                         if value.get_ref().as_str() == Some("") {
                             columns.push((name.into(), String::new()));
                         } else if let Some(template) = reader.text(name, value) {
-                            check_template(reader, &template, &known, self.hidden.is_some());
                             columns.push((name.into(), template.into_inner()));
                         }
                     }
@@ -375,7 +383,7 @@ impl File {
             }
         }
         match file {
-            Some(file) if !columns.is_empty() => self.rubric.exports.push(Export { file, columns }),
+            Some(file) if !columns.is_empty() => self.exports.push((file, columns)),
             _ if !reader.mistakes.is_empty() => {}
             _ => {
                 let message = "an [[export]] has a `file` and `columns`";
@@ -445,14 +453,22 @@ fn check_models<'i>(
     }
 }
 
-/// Notes `{…}` that are none of `known`; hidden items are not known yet.
-fn check_template(reader: &mut Reader, template: &Spanned<String>, known: &[&str], hidden: bool) {
-    for part in template.get_ref().split('{').skip(1) {
-        let name = part.split('}').next().unwrap_or_default();
-        if !known.contains(&name) && !(hidden && name.starts_with("items.")) {
-            reader.unknown(template.span(), "placeholder", name, known);
+/// An export as it is written: its file, and columns with their templates.
+type Columns = (Spanned<String>, Vec<(String, String)>);
+
+/// Exports, which may name every item.
+fn exports_of(rubric: &Rubric, written: Vec<Columns>) -> Result<Vec<Export>, Vec<Mistake>> {
+    let groups = rubric.pattern.capture_names().flatten();
+    let known = placeholders(rubric.items.iter().map(|item| item.id.as_str()), groups);
+    let (mut exports, mut mistakes) = (Vec::new(), Vec::new());
+    for (file, columns) in written {
+        let columns = columns.iter().map(|(name, template)| (name.as_str(), template.as_str()));
+        match Export::new(file.get_ref(), columns, &known) {
+            Ok(export) => exports.push(export),
+            Err(why) => mistakes.push(Mistake::new(file.span(), why, "this table")),
         }
     }
+    if mistakes.is_empty() { Ok(exports) } else { Err(mistakes) }
 }
 
 /// A path that stays in the folder that it is of.

@@ -1,6 +1,7 @@
 //! A rubric as it was read.
 
 use crate::bsdf::{ClaimsPatch, Precision, Transport};
+use crate::grading::output::{Export, Template};
 use crate::grading::{Hints, ItemKind};
 use crate::plugins::Limits;
 use crate::suite::Settings;
@@ -34,7 +35,7 @@ pub struct Rubric {
     /// What folders and zips must be called; its named groups are told apart.
     pub pattern: Regex,
     /// What a submission is called, with `{GROUP}`s of the pattern.
-    pub id: Option<String>,
+    pub id: Option<Template>,
     /// What building and running may take.
     pub sandbox: SandboxTerms,
     /// What one call may take.
@@ -45,7 +46,7 @@ pub struct Rubric {
     pub models: BTreeMap<String, ClaimsPatch>,
     /// What earns points, hidden ones last.
     pub items: Vec<Item>,
-    /// Tables for other systems.
+    /// Tables for other systems; none for students, who lack the hidden items.
     pub exports: Vec<Export>,
 }
 
@@ -171,15 +172,3 @@ pub struct Item {
     /// Sharpness.
     pub settings: Settings,
 }
-
-/// A table for another system.
-#[derive(Clone, Debug, PartialEq)]
-pub struct Export {
-    /// Its file in the folder of grades.
-    pub file: String,
-    /// Column names, each with a template, in their order.
-    pub columns: Vec<(String, String)>,
-}
-
-/// What columns and ids may name beside groups of the pattern and `items.ID`.
-pub const FIELDS: [&str; 6] = ["id", "score", "max", "percent", "feedback", "cause"];

@@ -87,7 +87,7 @@ fn a_rubric_is_read_as_it_is_written() {
     assert!(rubric.sandbox.read[0].is_absolute(), "{:?}", rubric.sandbox.read);
     assert_eq!(rubric.languages[0].route, Route::Library("brdf.so".into()));
     assert_eq!(rubric.languages[0].files, [folder.path().join("given.h")]);
-    assert_eq!(rubric.exports[0].columns[1], ("Grade".into(), "{score}".into()), "in the order of the text");
+    assert_eq!(rubric.exports[0].file(), "moodle.csv");
     let [a, b, c] = &rubric.items[..] else { panic!("{:?}", rubric.items) };
     assert!(a.subjects.is_empty() && a.kind == ItemKind::Regular && a.title == "a");
     assert_eq!((b.kind, b.credit, b.hints, b.points), (ItemKind::Bonus, Credit::Whole, Hints::Full, 2.5));
@@ -132,8 +132,7 @@ fn mistakes_are_told_with_what_to_type() {
         ("library = \"brdf.so\"\n", "", "in one way what is measured"),
         ("when = \"brdf.c\"\n", "", "without `when`"),
         ("given.h", "taken.h", "does not exist"),
-        ("{score}", "{scor}", "did you mean `score`?"),
-        ("{number}\"\n\n[sandbox]", "{nummer}\"\n\n[sandbox]", "did you mean `number`?"),
+        ("{number}\"\n\n[sandbox]", "{nummer}\"\n\n[sandbox]", "did you mean {number}?"),
         (r"(?<number>\d+)", r"(?<number>\d+", "no regular expression"),
         ("isotropic = true", "isotropc = true", "did you mean `isotropic`?"),
         ("solution = \"solution\"\n", "", "a rubric without `solution`"),
@@ -156,6 +155,9 @@ fn all_mistakes_are_told_at_once_and_those_of_the_hidden_part_too() {
     let text = RUBRIC.replace("seed = 3", "seed = -3").replace("points = 1", "points = 'one'");
     let (_folder, path) = folder(&text, HIDDEN);
     assert!(load(&path, false).unwrap_err().lines().len() >= 2);
+    let (_folder, path) = folder(&RUBRIC.replace("{score}", "{scor}"), HIDDEN);
+    assert!(load(&path, false).is_ok(), "students have no use for exports");
+    assert!(load(&path, true).unwrap_err().lines()[0].contains("did you mean {score}?"));
     for (hidden, part) in [
         ("seed = 3", "the hidden seed is the public one"),
         ("", "without `seed`"),

@@ -23,6 +23,8 @@ pub struct Rules {
     pub processes: u64,
     /// Bytes of files.
     pub disk: u64,
+    /// Where the folder is.
+    pub work: String,
     /// Folders that it may read beside those that every sandbox has.
     pub open: Vec<String>,
 }

@@ -119,6 +119,7 @@ impl Sandbox {
             clock: self.allowance.clock.map(|t| t.as_secs_f64()),
             processes: self.allowance.processes,
             disk: self.allowance.disk,
+            work: mounts::work(&open).into(),
             open: open.iter().map(|path| path.to_string_lossy().into_owned()).collect(),
         };
         let rules = serde_json::to_string(&rules).map_err(|e| e.to_string())?;
@@ -162,7 +163,7 @@ impl Sandbox {
             return Ok(path);
         }
         match path.strip_prefix(&folder) {
-            Ok(rest) => Ok(Path::new(mounts::WORK).join(rest)),
+            Ok(rest) => Ok(Path::new(self.work()).join(rest)),
             Err(_) => Err(format!(
                 "`{}` is not in the folder `{}` that the sandbox shows",
                 path.display(),
@@ -179,6 +180,11 @@ impl Sandbox {
             _ => path.clone(),
         });
         expanded.filter_map(|path| path.canonicalize().ok()).collect()
+    }
+
+    /// Where it has its folder while it is built.
+    pub(super) fn work(&self) -> &'static str {
+        mounts::work(&self.readable())
     }
 
     /// Writes down that something was tried, seen from outside.

@@ -5,20 +5,24 @@ use crate::report::visible::{one_line, visible};
 /// Invisible, and the end of what looks like a name or an address.
 const BREAK: char = '\u{200b}';
 
-/// Text that nothing in it can turn into anything else: neither HTML nor emphasis, links,
-/// mentions, references, formulas or cells.
-pub fn text(content: &str) -> String {
+/// Text on one line that nothing in it can turn into HTML, emphasis, links, formulas or
+/// cells; addresses stay addresses, and names names.
+pub fn plain(content: &str) -> String {
     let mut escaped = String::new();
     for c in one_line(content).chars() {
         if r"\`*_[]<>&|~#$".contains(c) {
             escaped.push('\\');
         }
         escaped.push(c);
-        if c == '@' {
-            // Mentions are looked for after escapes are gone.
-            escaped.push(BREAK);
-        }
     }
+    escaped
+}
+
+/// Text that nothing in it can turn into anything else: neither HTML nor emphasis, links,
+/// mentions, references, formulas or cells.
+pub fn text(content: &str) -> String {
+    // Mentions are looked for after escapes are gone.
+    let escaped = plain(content).replace('@', &format!("@{BREAK}"));
     let broken = |word: &str, at: usize| format!("{}{BREAK}{}", &word[..at], &word[at..]);
     escaped.replace("://", &broken("://", 1)).replace("www.", &broken("www.", 3))
 }

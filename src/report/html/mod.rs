@@ -18,4 +18,6 @@ mod subject;
 #[cfg(test)]
 mod tests;
 
+pub(crate) use page::STYLE;
 pub use page::{PAGE, page};
+pub(crate) use pictures::inline;

@@ -35,7 +35,8 @@ const BYTES_A_RESULT: usize = 10;
 /// Subjects told at the top; the rest are in the matrix.
 const MOST_TOLD: usize = 100;
 
-const STYLE: &str = include_str!("style.css");
+/// The style of every page: its colours, type and pictures.
+pub const STYLE: &str = include_str!("style.css");
 const SCRIPTS: [&str; 3] =
     [include_str!("script/cells.js"), include_str!("script/discs.js"), include_str!("script/page.js")];
 

@@ -61,6 +61,6 @@ pub fn of_cases(subject: &Subject, read: &[(usize, Evidence)], all: bool) -> Vec
 }
 
 /// Without what a page's policy of styles forbids; the page's own style says it.
-fn inline(svg: String) -> String {
+pub fn inline(svg: String) -> String {
     svg.replace(" style=\"image-rendering:pixelated\"", "")
 }

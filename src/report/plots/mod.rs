@@ -4,6 +4,7 @@ mod albedo;
 mod angle_axis;
 mod axes;
 mod azimuth;
+mod bars;
 mod by_theta;
 mod chosen;
 pub(super) mod colours;
@@ -24,10 +25,11 @@ mod raster;
 mod ratio_axes;
 mod reciprocity_map;
 #[cfg(test)]
-pub(super) mod synthetic;
+pub(crate) mod synthetic;
 mod weights;
 
 pub use albedo::albedo as albedo_curve;
+pub use bars::Bars;
 pub use chosen::{Pictured, Which, draw};
 pub use disc::{Caption, picture as disc_picture};
 pub use histogram::{Histogram, p_values as p_value_histogram};
@@ -39,5 +41,5 @@ pub use reciprocity_map::picture as reciprocity_picture;
 
 pub(super) use chosen::file_name;
 pub(super) use disc::{Scale, scale as disc_scale};
-pub(super) use figure::shortened;
-pub(super) use plane::of_diagnosis as diagnosis_picture;
+pub(crate) use figure::shortened;
+pub(crate) use plane::of_diagnosis as diagnosis_picture;
