@@ -1,11 +1,11 @@
 //! index.html: the class, for the teacher.
 
 use super::super::{Grade, ItemKind};
-use super::files::{appeals, feedback_page, file_name};
-use super::gradebook::{causes, sorted};
+use super::files::{self, appeals, feedback_page, file_name};
+use super::gradebook::{causes_in_words, sorted};
 use super::page::OWN_STYLE;
 use super::points::{counted, percent, points};
-use super::statistics::{bins, bugs, items, middle, unexplained};
+use super::statistics::{self, bins, bugs, items, middle, unexplained};
 use super::write::Class;
 use crate::cause::Cause;
 use crate::report::formats::manual::cause_page;
@@ -65,10 +65,13 @@ struct ItemView<'a> {
 
 struct Bug<'a> {
     count: usize,
+    unsure: usize,
     slug: &'a str,
     page: Option<String>,
     statement: &'a str,
     who: Vec<Link<'a>>,
+    /// Of whom it is not certain.
+    perhaps: Vec<Link<'a>>,
 }
 
 struct Row<'a> {
@@ -78,15 +81,19 @@ struct Row<'a> {
     language: &'a str,
     score: String,
     percent: String,
-    causes: Vec<&'a str>,
+    causes: Vec<String>,
     marks: String,
     folder: String,
     appeals: Option<String>,
 }
 
-/// A link within the folder of the grades: `~` and `%` are the only marks of names.
+/// The page of a submission, from here.
+fn page_of(grade: &Grade) -> String {
+    files::link(&feedback_page(&grade.id))
+}
+
 fn link(grade: &Grade) -> Link<'_> {
-    (feedback_page(&grade.id), &grade.id)
+    (page_of(grade), &grade.id)
 }
 
 /// The page as text: equal grades in any order give equal text.
@@ -95,11 +102,7 @@ pub fn class_page(class: &Class) -> String {
     let names: BTreeSet<&str> = grades.iter().flat_map(|g| g.names.keys()).map(String::as_str).collect();
     let names: Vec<&str> = names.into_iter().filter(|name| tells(name, &grades)).collect();
     let told = |what: &dyn Fn(&Grade) -> Vec<String>| -> Vec<Told> {
-        let all = grades.iter().map(|grade| Told {
-            page: feedback_page(&grade.id),
-            id: &grade.id,
-            what: what(grade),
-        });
+        let all = grades.iter().map(|grade| Told { page: page_of(grade), id: &grade.id, what: what(grade) });
         all.filter(|t| !t.what.is_empty()).collect()
     };
     let page = Page {
@@ -114,7 +117,7 @@ pub fn class_page(class: &Class) -> String {
         broken: told(&|grade| grade.broken.iter().map(|b| b.why.clone()).collect()),
         histogram: histogram(&grades),
         items: items(&grades).iter().map(item).collect(),
-        bugs: bugs(&grades).into_iter().map(|(slug, of)| bug(slug, &of)).collect(),
+        bugs: bugs(&grades).iter().map(bug).collect(),
         unexplained: unexplained(&grades).into_iter().map(link).collect(),
         submissions: grades.iter().map(|grade| row(grade, &names)).collect(),
         names,
@@ -192,7 +195,7 @@ fn histogram(grades: &[&Grade]) -> String {
     inline(bars.svg())
 }
 
-fn item<'a>(of: &super::statistics::ItemStatistics<'a>) -> ItemView<'a> {
+fn item<'a>(of: &statistics::ItemStatistics<'a>) -> ItemView<'a> {
     let kind = match of.item.kind {
         ItemKind::Regular => "",
         ItemKind::Bonus => "bonus",
@@ -209,18 +212,22 @@ fn item<'a>(of: &super::statistics::ItemStatistics<'a>) -> ItemView<'a> {
     }
 }
 
-fn bug<'a>(slug: &'a str, of: &[&'a Grade]) -> Bug<'a> {
-    let known = Cause::ALL.into_iter().find(|cause| cause.slug() == slug);
-    let said = of.iter().flat_map(|g| &g.diagnoses).find(|d| d.cause.as_deref() == Some(slug));
+fn bug<'a>(of: &statistics::Bug<'a>) -> Bug<'a> {
+    let statistics::Bug { slug, sure, unsure } = of;
+    let known = Cause::ALL.into_iter().find(|cause| cause.slug() == *slug);
+    let all = || sure.iter().chain(unsure).copied();
+    let said = all().flat_map(|grade| &grade.diagnoses).find(|d| d.cause.as_deref() == Some(slug));
     Bug {
-        count: of.len(),
+        count: sure.len(),
+        unsure: unsure.len(),
         slug,
         page: cause_page(slug),
         statement: match known {
             Some(cause) => cause.statement(),
             None => said.map_or("", |found| found.statement.as_str()),
         },
-        who: of.iter().copied().map(link).collect(),
+        who: sure.iter().copied().map(link).collect(),
+        perhaps: unsure.iter().copied().map(link).collect(),
     }
 }
 
@@ -232,16 +239,16 @@ fn row<'a>(grade: &'a Grade, names: &[&'a str]) -> Row<'a> {
     ];
     let has_lost = grade.items.iter().any(|item| item.is_lost());
     Row {
-        page: feedback_page(&grade.id),
+        page: page_of(grade),
         id: &grade.id,
         names: names.iter().map(|name| grade.names.get(*name).map_or("", String::as_str)).collect(),
         language: grade.language.as_deref().unwrap_or(""),
         score: points(grade.score),
         percent: format!("{:.0}", percent(grade)),
-        causes: causes(grade),
+        causes: causes_in_words(grade),
         marks: marks.iter().filter(|m| m.0).map(|m| m.1).collect::<Vec<_>>().join(", "),
-        folder: format!("submissions/{}", file_name(&grade.id)),
-        appeals: has_lost.then(|| appeals(&grade.id)),
+        folder: files::link(&format!("submissions/{}", file_name(&grade.id))),
+        appeals: has_lost.then(|| files::link(&appeals(&grade.id))),
     }
 }
 
@@ -262,7 +269,7 @@ mod tests {
         for part in [
             "<h1>2 submissions: 2.08 of 10 points in the mean, 2.08 in the median</h1>",
             "<li class=\"fail\"><b>1</b> could not be measured</li>",
-            "with probability at most 2e-4; were all 2 correct, any of them would with at most 4.00e-4; equal seeds",
+            "with probability at most 2e-4; were all 2 correct, any of them would with at most 4e-4; equal seeds",
             "<a href=\"feedback/1042.html\"><bdi>1042</bdi></a>: <bdi>albedo could not decide at θo 77°</bdi>",
             "opened ../rubric.toml (3 times)",
             "<a href=\"feedback/1043.html\"><bdi>1043</bdi></a>: <bdi>it does not build: clang++ ended with 1</bdi>",

@@ -1,11 +1,11 @@
 //! Grades made up for tests.
 
-use super::super::{Broken, GRADE_VERSION, Grade, Hints, Incident, ItemGrade, ItemKind, Lost, Phase};
 use crate::bsdf::Direction;
 use crate::checks::{Effect, Verdict};
 use crate::diagnosis::{Bin, Profile};
 use crate::evidence::{Figure, Place};
-use crate::report::{Diagnosis, WoAngles, write_evidence};
+use crate::grading::{Broken, GRADE_VERSION, Grade, Hints, Incident, ItemGrade, ItemKind, Lost, Phase};
+use crate::report::{Diagnosis, Report, WoAngles, write_evidence};
 use std::collections::BTreeMap;
 use std::path::Path;
 
@@ -102,6 +102,12 @@ pub fn diagnosis(subject: &str) -> Diagnosis {
     }
 }
 
+/// A report with the diagnoses of these subjects.
+pub fn report(subjects: &[&str]) -> Report {
+    let diagnoses = subjects.iter().map(|subject| diagnosis(subject)).collect();
+    Report { diagnoses, results: Vec::new(), ..crate::report::synthetic::report() }
+}
+
 /// Writes evidence of a made-up lobe at θ = 60° or so; its path from the folder.
 pub fn evidence_in(folder: &Path) -> String {
     use crate::report::lobes::{Lobe, evidence};
@@ -136,7 +142,7 @@ pub fn whole(evidence: &str) -> Grade {
             lost: vec![found("sanity", 60.0)],
             ..item("nan", 0.5)
         },
-        hidden_item("secret", "metal:alpha=0.77"),
+        hidden_item("secret", "metal:alpha=0.7734"),
     ];
     let score = items.iter().map(|i| i.earned).sum();
     let max = items.iter().filter(|i| i.kind == ItemKind::Regular).map(|i| i.points).sum();
@@ -146,7 +152,7 @@ pub fn whole(evidence: &str) -> Grade {
         items,
         diagnoses: vec![
             diagnosis("metal:alpha=0.1"),
-            Diagnosis { cause: Some("masking".into()), ..diagnosis("metal:alpha=0.77") },
+            Diagnosis { cause: Some("masking".into()), confident: false, ..diagnosis("metal:alpha=0.7734") },
         ],
         incidents: vec![Incident { phase: Phase::Run, what: "opened ../rubric.toml".into(), times: 3 }],
         review: vec!["albedo could not decide at θo 77°".into()],
@@ -159,6 +165,7 @@ pub fn broken() -> Grade {
     let said = "brdf.cpp:3:1: error: unknown type name 'flaot'\n flaot pdf(vec3 wo);\n ^";
     Grade {
         id: "1043".into(),
+        names: BTreeMap::from([("name".into(), "Ada Lovelace".into()), ("number".into(), "1043".into())]),
         broken: Some(Broken { why: "it does not build: clang++ ended with 1".into(), said: said.into() }),
         max: 3.0,
         items: vec![

@@ -5,7 +5,6 @@ use super::super::{Broken, Grade, Hints, Incident, ItemGrade, ItemKind, Phase};
 use super::found::{self, Found, listed};
 use super::points::missing;
 use crate::cause::Cause;
-use crate::diagnosis::Profile;
 use crate::report::Diagnosis;
 use crate::report::formats::manual::cause_page;
 use crate::report::visible::visible;
@@ -90,6 +89,8 @@ pub struct LostItem<'a> {
     pub item: ItemTold<'a>,
     /// How much of what was found is told; of hidden items nothing.
     pub hints: Hints,
+    /// Whether it could be measured.
+    pub is_measured: bool,
     /// The title of the item that had to earn something first.
     pub unmet: Option<&'a str>,
     /// `3 of 6 cases passed`.
@@ -113,8 +114,6 @@ pub struct CauseTold<'a> {
     pub repair: Option<&'a str>,
     /// What speaks for it, where that is told.
     pub evidence: Vec<&'a str>,
-    /// Subject and counts of its picture.
-    pub profile: Option<(&'a str, &'a Profile)>,
 }
 
 impl CauseTold<'_> {
@@ -172,7 +171,9 @@ impl<'a> Feedback<'a> {
     /// Tells the causes of what a lost item found; their numbers.
     fn add_causes(&mut self, grade: &'a Grade, item: &'a ItemGrade, hints: Hints) -> Vec<usize> {
         let mut numbers = Vec::new();
-        for diagnosis in &grade.diagnoses {
+        let (sure, unsure): (Vec<&Diagnosis>, Vec<&Diagnosis>) =
+            grade.diagnoses.iter().partition(|d| d.confident);
+        for diagnosis in sure.into_iter().chain(unsure) {
             let Some(slug) = diagnosis.cause.as_deref() else { continue };
             if !item.lost.iter().any(|l| l.subject == diagnosis.subject) {
                 continue;
@@ -183,9 +184,6 @@ impl<'a> Feedback<'a> {
             });
             let cause = &mut self.causes[at];
             cause.add(diagnosis, hints, is_in_hidden(grade, &diagnosis.subject));
-            if cause.profile.is_none() {
-                cause.profile = profile(item, diagnosis);
-            }
             if !cause.items.contains(&item.title.as_str()) {
                 cause.items.push(&item.title);
             }
@@ -199,14 +197,7 @@ impl<'a> Feedback<'a> {
 
 impl<'a> CauseTold<'a> {
     fn new(slug: &'a str) -> Self {
-        Self {
-            slug,
-            statements: Vec::new(),
-            items: Vec::new(),
-            repair: None,
-            evidence: Vec::new(),
-            profile: None,
-        }
+        Self { slug, statements: Vec::new(), items: Vec::new(), repair: None, evidence: Vec::new() }
     }
 
     fn add(&mut self, found: &'a Diagnosis, hints: Hints, in_hidden: bool) {
@@ -231,18 +222,6 @@ fn is_in_hidden(grade: &Grade, subject: &str) -> bool {
     grade.items.iter().filter(|i| i.hidden).any(|i| i.lost.iter().any(|l| l.subject == subject))
 }
 
-/// The counts of a diagnosis, if they are of a direction that this item shows.
-fn profile<'a>(item: &ItemGrade, found: &'a Diagnosis) -> Option<(&'a str, &'a Profile)> {
-    let profile = found.profile.as_ref()?;
-    let [theta, phi] = [profile.wo.theta(), profile.wo.phi()].map(f64::to_degrees);
-    let apart = |a: f64, b: f64| (a - b + 180.0).rem_euclid(360.0) - 180.0;
-    let shown = item.lost.iter().filter(|l| l.subject == found.subject).filter_map(|l| l.wo).any(|wo| {
-        let polar = theta.to_radians().sin().abs() < 1e-9;
-        (wo.theta_deg - theta).abs() < 1e-6 && (polar || apart(wo.phi_deg, phi).abs() < 1e-6)
-    });
-    shown.then_some((&found.subject, profile))
-}
-
 fn lost_item<'a>(grade: &'a Grade, item: &'a ItemGrade) -> LostItem<'a> {
     let hints = if item.hidden { Hints::None } else { item.hints };
     let told = hints >= Hints::Region;
@@ -250,11 +229,16 @@ fn lost_item<'a>(grade: &'a Grade, item: &'a ItemGrade) -> LostItem<'a> {
         let needed = grade.items.iter().find(|i| i.id == id);
         needed.map_or(id, |needed| needed.title.as_str())
     });
+    let measured = grade.broken.is_none() || item.cases == 0;
+    // What the text says of is not known to be wrong.
+    let is_wrong = measured && (unmet.is_none() || item.passed < item.cases || item.hidden);
+    let told_item = ItemTold::of(item);
     LostItem {
-        item: ItemTold::of(item),
+        item: ItemTold { text: told_item.text.filter(|_| is_wrong), ..told_item },
         hints,
+        is_measured: measured,
         unmet,
-        count: (told && item.cases > 0).then(|| {
+        count: (told && measured && item.cases > 0).then(|| {
             format!("{} of {} case{} passed", item.passed, item.cases, if item.cases == 1 { "" } else { "s" })
         }),
         found: if told { found::by_check(&item.lost) } else { Vec::new() },
@@ -326,6 +310,7 @@ mod tests {
         let made = all.map(|(id, kind, points, cases, unmet)| ItemGrade {
             kind,
             cases,
+            passed: 0,
             unmet: unmet.then(|| "builds".into()),
             ..item(id, points)
         });
@@ -398,13 +383,19 @@ mod tests {
     }
 
     #[test]
-    fn pictures_of_causes_are_of_directions_that_are_shown() {
-        let with = |theta| ItemGrade { lost: vec![lost("metal", "normalization", theta)], ..item("a", 2.0) };
-        let of = |theta| {
-            let grade = Grade { items: vec![with(theta)], diagnoses: vec![diagnosis("metal")], ..grade() };
-            Feedback::of(&grade, "").causes[0].profile.is_some()
+    fn texts_on_a_loss_are_told_where_something_is_wrong() {
+        let of = |item: ItemGrade, broken: bool| {
+            let broken = broken.then(|| Broken { why: "w".into(), said: String::new() });
+            let grade = Grade { items: vec![item], broken, ..grade() };
+            let feedback = Feedback::of(&grade, "");
+            (feedback.lost[0].item.text.is_some(), feedback.lost[0].count.is_some())
         };
-        assert!(of(60.0) && !of(30.0), "the counts of the example are of 60°");
+        assert_eq!(of(item("a", 1.0), false), (true, true));
+        assert_eq!(of(item("a", 1.0), true), (false, false), "nobody measured that it is wrong");
+        assert_eq!(of(ItemGrade { cases: 0, passed: 0, ..item("builds", 1.0) }, true), (true, false));
+        let unmet = ItemGrade { unmet: Some("b".into()), passed: 6, ..item("a", 1.0) };
+        assert_eq!(of(unmet.clone(), false), (false, true), "all of its cases passed");
+        assert_eq!(of(ItemGrade { passed: 5, ..unmet }, false), (true, true));
     }
 
     #[test]

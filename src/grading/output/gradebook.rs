@@ -26,15 +26,25 @@ pub fn item_ids<'a>(grades: &[&'a Grade]) -> Vec<&'a str> {
     ids
 }
 
-/// Slugs of the causes of a submission, each once.
-pub fn causes(grade: &Grade) -> Vec<&str> {
-    let mut slugs: Vec<&str> = Vec::new();
-    for slug in grade.diagnoses.iter().filter_map(|d| d.cause.as_deref()) {
-        if !slugs.contains(&slug) {
-            slugs.push(slug);
+/// Slugs of the causes of a submission, each once, and whether one of its subjects names
+/// it with confidence; those that are come first.
+pub fn causes(grade: &Grade) -> Vec<(&str, bool)> {
+    let mut causes: Vec<(&str, bool)> = Vec::new();
+    for sure in [true, false] {
+        for slug in grade.diagnoses.iter().filter(|d| d.confident == sure).filter_map(|d| d.cause.as_deref())
+        {
+            if !causes.iter().any(|(known, _)| *known == slug) {
+                causes.push((slug, sure));
+            }
         }
     }
-    slugs
+    causes
+}
+
+/// The same in words: what is not certain has a question mark.
+pub fn causes_in_words(grade: &Grade) -> Vec<String> {
+    let word = |(slug, sure): (&str, bool)| format!("{slug}{}", if sure { "" } else { "?" });
+    causes(grade).into_iter().map(word).collect()
 }
 
 /// Points earned of an item, if the submission has that.
@@ -64,7 +74,7 @@ pub fn gradebook(grades: &[Grade]) -> Vec<u8> {
         row.extend(items.iter().map(|id| earned(grade, id)));
         let incidents: Vec<String> = grade.incidents.iter().map(told).collect();
         row.extend([
-            causes(grade).join("; "),
+            causes_in_words(grade).join("; "),
             grade.broken.as_ref().map(|b| b.why.clone()).unwrap_or_default(),
             incidents.join("; "),
             grade.review.join("; "),
@@ -90,8 +100,8 @@ mod tests {
         assert_eq!(
             String::from_utf8(bytes.clone()).unwrap(),
             "id,name,number,language,score,max,builds,pdf,values,sampling,grazing,nan,secret,causes,broken,incidents,review\n\
-             1042,Ada Lovelace,1042,C++,4.1667,10,1,0.6667,3,0,0,-0.5,0,half-vector-jacobian; masking,,opened ../rubric.toml (3 times),albedo could not decide at θo 77°\n\
-             1043,Ada Lovelace,1042,C++,0,3,0,0,,,,,,,it does not build: clang++ ended with 1,,\n"
+             1042,Ada Lovelace,1042,C++,4.1667,10,1,0.6667,3,0,0,-0.5,0,half-vector-jacobian; masking?,,opened ../rubric.toml (3 times),albedo could not decide at θo 77°\n\
+             1043,Ada Lovelace,1043,C++,0,3,0,0,,,,,,,it does not build: clang++ ended with 1,,\n"
         );
         assert_eq!(gradebook(&[whole(""), broken()]), bytes, "in any order");
     }

@@ -1,12 +1,14 @@
 //! The pictures of a feedback: of each lost item the most telling one.
 
-use super::super::Lost;
-use super::feedback::{CauseTold, Feedback, LostItem};
+use super::super::{Hints, Lost};
+use super::feedback::{Feedback, LostItem};
 use super::found::Found;
+use crate::bsdf::Direction;
 use crate::diagnosis::Profile;
 use crate::evidence::Evidence;
 use crate::report::{
-    Kind, Picture, Pictured, diagnosis_picture, pictures_of_case, pictures_of_subject, read_evidence,
+    Diagnosis, Kind, Picture, Pictured, Report, WoAngles, diagnosis_picture, pictures_of_case,
+    pictures_of_subject, read_evidence,
 };
 use std::collections::{BTreeMap, BTreeSet};
 use std::path::Path;
@@ -52,27 +54,29 @@ pub fn telling(check: &str) -> &'static [Kind] {
     }
 }
 
-/// Draws them from the evidence in the submission's folder.
-pub fn drawn(measured: &Path, feedback: &Feedback) -> Drawn {
+/// Draws them from what was measured in the submission's folder.
+pub fn drawn(measured: &Path, report: Option<&Report>, feedback: &Feedback) -> Drawn {
     let mut drawn = Drawn::default();
     let mut left = MOST;
-    for cause in &feedback.causes {
-        if let Some((subject, profile)) = cause.profile.filter(|_| left > 0) {
+    let diagnoses = report.map_or(&[][..], |report| &report.diagnoses);
+    for (number, cause) in feedback.causes.iter().enumerate() {
+        let lost = feedback.lost.iter().filter(|lost| lost.causes.contains(&number));
+        let counted =
+            lost.flat_map(|l| &l.found).find_map(|found| counted(found, diagnoses, Some(cause.slug)));
+        if let Some((subject, profile)) = counted.filter(|_| left > 0) {
             let title = format!("{subject}: samples over pdf, and what the cause predicts");
             let svg = diagnosis_picture(subject, profile);
             drawn.causes.insert(cause.slug.into(), Shown { title, svg });
             left -= 1;
         }
     }
-    let mut desk = Desk { measured, read: BTreeMap::new(), unread: None };
+    let mut desk = Desk::new(measured);
     let mut seen = BTreeSet::new();
     for lost in feedback.lost.iter().filter(|l| !l.found.is_empty()) {
         if left == 0 {
             break;
         }
-        if let Some((shown, key)) =
-            desk.of_item(lost, &feedback.causes).filter(|(_, key)| !seen.contains(key))
-        {
+        if let Some((shown, key)) = desk.of_item(lost, diagnoses).filter(|(_, key)| !seen.contains(key)) {
             seen.insert(key);
             drawn.items.insert(lost.item.id.into(), shown);
             left -= 1;
@@ -80,6 +84,22 @@ pub fn drawn(measured: &Path, feedback: &Feedback) -> Drawn {
     }
     drawn.unread = desk.unread;
     drawn
+}
+
+/// The counts of a diagnosis of a subject that a check shows, at a direction that it shows.
+fn counted<'a>(
+    found: &Found,
+    diagnoses: &'a [Diagnosis],
+    slug: Option<&str>,
+) -> Option<(&'a str, &'a Profile)> {
+    let of_cause = diagnoses.iter().filter(|d| slug.is_none() || d.cause.as_deref() == slug);
+    of_cause.filter_map(|d| Some((d.subject.as_str(), d.profile.as_ref()?))).find(|(subject, profile)| {
+        let shown = found.all.iter().filter(|lost| lost.subject == *subject).filter_map(|lost| lost.wo);
+        let angle = |wo: WoAngles| {
+            Direction::from_angles(wo.theta_deg.to_radians(), wo.phi_deg.to_radians()).angle(profile.wo)
+        };
+        shown.into_iter().any(|wo| angle(wo) < 1e-6)
+    })
 }
 
 /// Tells pictures apart: the file and what is drawn of it.
@@ -114,12 +134,13 @@ impl<'a> Desk<'a> {
         self.read.get(path)?.as_ref()
     }
 
-    fn of_item(&mut self, lost: &LostItem, causes: &[CauseTold]) -> Option<(Shown, Key)> {
-        let of_cause = lost.causes.iter().find_map(|n| causes[*n].profile);
+    fn of_item(&mut self, lost: &LostItem, diagnoses: &[Diagnosis]) -> Option<(Shown, Key)> {
+        // A prediction tells the cause.
+        let told = if lost.hints >= Hints::Cause { diagnoses } else { &[] };
         lost.found.iter().find_map(|found| {
-            // The counts of a diagnosis are of one subject.
-            let profile = of_cause.filter(|(subject, _)| *subject == found.clearest.subject).map(|p| p.1);
-            self.of_check(found, profile)
+            let profile =
+                counted(found, told, None).filter(|(subject, _)| *subject == found.clearest.subject);
+            self.of_check(found, profile.map(|p| p.1))
         })
     }
 
@@ -180,7 +201,7 @@ pub fn is_below(path: &str) -> bool {
 #[cfg(test)]
 mod tests {
     use super::super::super::{Grade, Hints, ItemGrade};
-    use super::super::examples::{diagnosis, evidence_in, grade, hidden_item, item, lost};
+    use super::super::examples::{diagnosis, evidence_in, grade, hidden_item, item, lost, report};
     use super::*;
 
     fn with(id: &str, points: f64, check: &str, evidence: &str) -> ItemGrade {
@@ -201,7 +222,7 @@ mod tests {
             hidden,
         ];
         let grade = Grade { items, diagnoses: vec![diagnosis("metal")], ..grade() };
-        let drawn = drawn(folder.path(), &Feedback::of(&grade, ""));
+        let drawn = drawn(folder.path(), Some(&report(&["metal"])), &Feedback::of(&grade, ""));
         let ids: Vec<&str> = drawn.items.keys().map(String::as_str).collect();
         assert_eq!(ids, ["b", "c"], "a has the picture of c, and hidden items have none");
         assert!(drawn.items["b"].title.starts_with(Kind::Plane.title()), "{}", drawn.items["b"].title);
@@ -216,10 +237,21 @@ mod tests {
         let of = |hints| {
             let item = ItemGrade { hints, ..with("a", 1.0, "goodness-of-fit", &path) };
             let grade = Grade { items: vec![item], diagnoses: vec![diagnosis("metal")], ..grade() };
-            let drawn = drawn(folder.path(), &Feedback::of(&grade, ""));
+            let drawn = drawn(folder.path(), Some(&report(&["metal"])), &Feedback::of(&grade, ""));
             (drawn.items.len(), drawn.causes.len())
         };
         assert_eq!([Hints::None, Hints::Region, Hints::Cause].map(of), [(0, 0), (1, 0), (1, 1)]);
+    }
+
+    #[test]
+    fn counts_of_a_cause_are_of_directions_that_are_shown() {
+        let of = |theta| {
+            let item = ItemGrade { lost: vec![lost("metal", "normalization", theta)], ..item("a", 2.0) };
+            let grade = Grade { items: vec![item], diagnoses: vec![diagnosis("metal")], ..grade() };
+            let drawn = drawn(Path::new("nowhere"), Some(&report(&["metal"])), &Feedback::of(&grade, ""));
+            drawn.causes.len()
+        };
+        assert_eq!((of(60.0), of(30.0)), (1, 0), "the counts of the example are of 60°");
     }
 
     #[test]
@@ -229,7 +261,7 @@ mod tests {
             [("evidence/case-0001.json.gz", "failed to read evidence/"), ("../x.json.gz", "lies in")]
         {
             let grade = Grade { items: vec![with("a", 1.0, "mis", path)], ..grade() };
-            let drawn = drawn(folder.path(), &Feedback::of(&grade, ""));
+            let drawn = drawn(folder.path(), Some(&report(&["metal"])), &Feedback::of(&grade, ""));
             assert!(drawn.items.is_empty());
             let told = drawn.unread.unwrap();
             assert!(told.contains(why) && !told.contains(&folder.path().display().to_string()), "{told}");

@@ -10,7 +10,9 @@ pub fn item(lost: &LostItem, causes: &[CauseTold]) -> Vec<String> {
     if let Some(text) = lost.item.text {
         lines.extend(visible(text.trim()).lines().map(String::from));
     }
-    if let Some(title) = lost.unmet {
+    if !lost.is_measured {
+        lines.push("Not measured, as the submission could not be.".into());
+    } else if let Some(title) = lost.unmet {
         lines.push(format!("Not scored, as “{}” earned nothing.", one_line(title)));
     }
     lines.extend(lost.count.as_ref().map(|count| format!("{count}.")));
@@ -86,7 +88,8 @@ mod tests {
     fn an_item_says_what_is_wrong_where_and_why() {
         let grade = whole("evidence/case-0003.json.gz");
         let feedback = Feedback::of(&grade, "gonio grade --self rubric.toml .");
-        let text = item(&feedback.lost[0], &feedback.causes).join("\n");
+        let pdf = feedback.lost.iter().find(|lost| lost.item.id == "pdf").unwrap();
+        let text = item(pdf, &feedback.causes).join("\n");
         for part in [
             "Integrate your pdf over the hemisphere: it must give 1.\n\nSee chapter 3",
             "2 of 6 cases passed.",

@@ -32,18 +32,31 @@ pub fn items<'a>(grades: &[&'a Grade]) -> Vec<ItemStatistics<'a>> {
     item_ids(grades).into_iter().map(of).collect()
 }
 
+/// A cause over the class.
+#[derive(Clone, Debug)]
+pub struct Bug<'a> {
+    /// Its slug.
+    pub slug: &'a str,
+    /// Submissions that have it.
+    pub sure: Vec<&'a Grade>,
+    /// Those that may have it.
+    pub unsure: Vec<&'a Grade>,
+}
+
 /// Causes with the submissions that have them, the most frequent first.
-pub fn bugs<'a>(grades: &[&'a Grade]) -> Vec<(&'a str, Vec<&'a Grade>)> {
-    let mut bugs: Vec<(&str, Vec<&Grade>)> = Vec::new();
+pub fn bugs<'a>(grades: &[&'a Grade]) -> Vec<Bug<'a>> {
+    let mut bugs: Vec<Bug> = Vec::new();
     for grade in grades {
-        for slug in causes(grade) {
-            match bugs.iter_mut().find(|(known, _)| *known == slug) {
-                Some((_, of)) => of.push(grade),
-                None => bugs.push((slug, vec![grade])),
-            }
+        for (slug, sure) in causes(grade) {
+            let at = bugs.iter().position(|bug| bug.slug == slug).unwrap_or_else(|| {
+                bugs.push(Bug { slug, sure: Vec::new(), unsure: Vec::new() });
+                bugs.len() - 1
+            });
+            if sure { bugs[at].sure.push(grade) } else { bugs[at].unsure.push(grade) }
         }
     }
-    bugs.sort_by(|a, b| b.1.len().cmp(&a.1.len()).then(a.0.cmp(b.0)));
+    let counts = |bug: &Bug| (bug.sure.len(), bug.unsure.len());
+    bugs.sort_by(|a, b| counts(b).cmp(&counts(a)).then(a.slug.cmp(b.slug)));
     bugs
 }
 
@@ -105,8 +118,9 @@ mod tests {
         let of = |id: &str| items.iter().find(|s| s.item.id == id).unwrap();
         assert!((of("builds").mean - 2.0 / 3.0).abs() < 1e-12 && of("builds").lost == 0);
         assert_eq!((of("pdf").lost, of("pdf").unmet, of("sampling").unmet), (2, 0, 2));
-        let bugs: Vec<(&str, usize)> = bugs(&grades).into_iter().map(|(slug, of)| (slug, of.len())).collect();
-        assert_eq!(bugs, [("half-vector-jacobian", 2), ("masking", 2)]);
+        let bugs: Vec<(&str, usize, usize)> =
+            bugs(&grades).into_iter().map(|b| (b.slug, b.sure.len(), b.unsure.len())).collect();
+        assert_eq!(bugs, [("half-vector-jacobian", 2, 0), ("masking", 0, 2)]);
         assert!(unexplained(&grades).is_empty());
         let unknown = Grade { diagnoses: Vec::new(), ..whole("") };
         assert_eq!(unexplained(&[&unknown]).len(), 1);

@@ -1,6 +1,6 @@
 //! Whole folders of grades.
 
-use super::examples::{SEED, broken, evidence_in, hostile, whole};
+use super::examples::{SEED, broken, evidence_in, hostile, report, whole};
 use super::*;
 use crate::grading::Grade;
 use std::collections::BTreeMap;
@@ -14,7 +14,8 @@ fn student(folder: &Path, measured: &Path, grade: &Grade) {
     let command =
         |item: &str| format!("gonio grade rubric.toml submissions --only {} --item {item}", grade.id);
     let told = Told { measured, to: &BOTH, again: AGAIN, command: &command };
-    write_student(folder, grade, None, &told).unwrap();
+    let report = report(&["metal:alpha=0.1", "metal:alpha=0.7734"]);
+    write_student(folder, grade, Some(&report), &told).unwrap();
 }
 
 /// Every file below a folder, by its path from there.
@@ -83,7 +84,7 @@ fn a_student_has_pages_results_and_appeals() {
         assert!(readme.contains(part), "no {part}:\n{readme}");
     }
     let secret = text(&written, "appeals/1042/secret/README.md");
-    assert!(secret.contains("hidden from students") && secret.contains("alpha=0.77"), "{secret}");
+    assert!(secret.contains("hidden from students") && secret.contains("alpha=0.7734"), "{secret}");
 }
 
 #[test]
@@ -100,7 +101,7 @@ fn nothing_hidden_is_in_any_file_for_students() {
     let mut count = 0;
     for name in of_students {
         let text = text(&written, name);
-        for part in [SEED.to_string().as_str(), "0.77", "a hidden message", "could not decide", "78.9"] {
+        for part in [SEED.to_string().as_str(), "0.7734", "a hidden message", "could not decide", "78.9"] {
             assert!(!text.contains(part), "{part} in {name}");
         }
         // The manual's pages name other causes, and the page of a told cause is folded in.
@@ -116,7 +117,7 @@ fn grade_evidence(folder: &Path) -> Option<String> {
     use crate::report::lobes::{Lobe, evidence};
     let lobe = Lobe { width: 0.3, cosine: 0.5, back: 0.0 };
     Some(
-        crate::report::write_evidence(folder, 9, &evidence("metal:alpha=0.77", 78.9, 17.0, lobe, lobe))
+        crate::report::write_evidence(folder, 9, &evidence("metal:alpha=0.7734", 78.9, 17.0, lobe, lobe))
             .unwrap(),
     )
 }

@@ -56,7 +56,7 @@ pub fn write_student(
     told: &Told,
 ) -> Result<(), FileError> {
     let feedback = Feedback::of(grade, told.again);
-    let drawn = drawn(told.measured, &feedback);
+    let drawn = drawn(told.measured, report, &feedback);
     let text = page::page(&feedback, &drawn, &nonce(grade));
     write_whole(&folder.join(feedback_page(&grade.id)), text.as_bytes())?;
     write_whole(&folder.join(feedback_text(&grade.id)), markdown::markdown(&feedback).as_bytes())?;
