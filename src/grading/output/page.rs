@@ -23,6 +23,8 @@ struct Page<'a> {
     rows: Vec<Row<'a>>,
     causes: Vec<CauseView<'a>>,
     lost: Vec<LostView<'a>>,
+    /// Titles of items that could not be measured.
+    unmeasured: String,
     unread: Option<&'a str>,
     passed: String,
     style: String,
@@ -78,7 +80,8 @@ pub fn page(feedback: &Feedback, drawn: &Drawn, nonce: &str) -> String {
         max: points(feedback.max),
         rows: rows(feedback),
         causes: feedback.causes.iter().enumerate().map(|(n, cause)| cause_view(n, cause, drawn)).collect(),
-        lost: feedback.lost.iter().enumerate().map(|(n, lost)| lost_view(n, lost, feedback, drawn)).collect(),
+        lost: feedback.told().map(|(n, lost)| lost_view(n, lost, feedback, drawn)).collect(),
+        unmeasured: titles(&feedback.unmeasured()),
         unread: drawn.unread.as_deref(),
         passed: titles(&feedback.passed()),
         style: format!("{STYLE}{OWN_STYLE}"),
@@ -97,7 +100,7 @@ fn cause_anchor(number: usize) -> String {
 
 fn rows<'a>(feedback: &Feedback<'a>) -> Vec<Row<'a>> {
     let row = |item: &super::feedback::ItemTold<'a>| {
-        let at = feedback.lost.iter().position(|lost| lost.item.id == item.id);
+        let at = feedback.told().find(|(_, lost)| lost.item.id == item.id).map(|(number, _)| number);
         let kind = match item.kind {
             ItemKind::Regular => "",
             ItemKind::Bonus => "bonus",
@@ -221,8 +224,8 @@ mod tests {
         let at = |part: &str| page.find(part).unwrap_or_else(|| panic!("no {part}"));
         assert!(at("clang++ ended with 1") < at("unknown type name &#39;flaot&#39;"));
         assert!(at("flaot") < at("id=\"points\""));
-        assert!(at("<bdi>Title of builds</bdi> <span") < at("<bdi>Title of pdf</bdi> <span"));
-        assert!(page.contains("Not scored, as <q><bdi>Title of builds</bdi></q> earned nothing."));
+        assert!(page.contains("<p>Not measured, as the submission could not be: “Title of pdf”.</p>"));
+        assert!(at("<bdi>Title of builds</bdi> <span") < at("Not measured"));
     }
 
     #[test]
