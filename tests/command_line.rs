@@ -7,7 +7,6 @@ use common::desk::{Desk, GONIO, done, finished, own_command};
 use gonio::report::schema_text;
 use serde_json::Value;
 use std::io::Read;
-use std::path::Path;
 use std::process::Child;
 use std::time::{Duration, Instant};
 
@@ -288,15 +287,17 @@ fn completions_and_help_and_version_are_printed() {
 }
 
 #[test]
-fn the_committed_schema_is_the_one_that_is_printed() {
-    let committed = Path::new(env!("CARGO_MANIFEST_DIR")).join("schemas/report.schema.json");
-    let committed = std::fs::read_to_string(&committed).unwrap();
-    let printed = Desk::new().gonio("schema");
-    printed.ends(0);
-    assert!(
-        printed.out == committed && printed.out == schema_text(),
-        "write it again: gonio schema > schemas/report.schema.json"
-    );
+fn the_committed_schemas_are_those_that_are_printed() {
+    for (of, text) in [("report", gonio::report::schema_text()), ("grade", gonio::grading::schema_text())] {
+        let committed = format!("{}/schemas/{of}.schema.json", env!("CARGO_MANIFEST_DIR"));
+        let committed = std::fs::read_to_string(committed).unwrap();
+        let printed = Desk::new().gonio(&format!("schema {of}"));
+        printed.ends(0);
+        assert!(
+            printed.out == committed && printed.out == text,
+            "write it again: gonio schema {of} > schemas/{of}.schema.json"
+        );
+    }
 }
 
 /// What is wrong with a report by the schema that the program prints.

@@ -163,6 +163,7 @@ fn reference_and_sensitivity_see_what_they_are_for() {
                 build: Arc::new(move || Some(Arc::new(Ggx::new(variant, Bug::CosineInD)))),
             }],
             reference: Some(("other".into(), Arc::new(Ggx::new(reference.abs(), bug)))),
+            within: None,
         };
         measure(vec![case])
     };

@@ -1,7 +1,7 @@
 #!/bin/sh
 # What the tests need beside Rust: C and C++ compilers, clang with its linker for
-# WebAssembly, Chromium with its driver, and Python with numpy, pytest, selenium, axe-core
-# and sdk/python under TARGET/venv. Installs what is missing and says nothing where all is
+# WebAssembly, bubblewrap, Chromium with its driver, and Python with numpy, pytest, selenium,
+# axe-core and sdk/python under TARGET/venv. Installs what is missing and says nothing where all is
 # there; the tests call it themselves.
 #
 #     tests/setup.sh [TARGET]        the build folder: $CARGO_TARGET_DIR or target
@@ -32,6 +32,7 @@ need gcc gcc
 need g++ g++
 need clang clang
 need wasm-ld lld
+need bwrap bubblewrap
 need python3 python3
 need chromium chromium
 need chromedriver chromium-driver
@@ -44,7 +45,7 @@ if [ -n "$packages" ]; then
     { apt-get update && DEBIAN_FRONTEND=noninteractive apt-get install -y $packages; } > "$log" 2>&1 ||
         fail "$(tail -n 3 "$log")
 $told"
-    for tool in gcc g++ clang wasm-ld python3 chromium chromedriver; do
+    for tool in gcc g++ clang wasm-ld bwrap python3 chromium chromedriver; do
         has "$tool" || fail "apt-get has installed$packages, and there is still no $tool"
     done
 fi

@@ -52,7 +52,7 @@ pub enum Command {
     New(new::NewArgs),
     /// Measure how far gonio's own verdicts can be trusted.
     Calibrate(calibrate::CalibrateArgs),
-    /// Print the JSON Schema of report.json.
+    /// Print the JSON Schema of report.json or grade.json.
     Schema(schema::SchemaArgs),
     /// Print completions for a shell.
     Completions(completions::CompletionsArgs),

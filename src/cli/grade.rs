@@ -114,6 +114,9 @@ pub fn grade(args: &GradeArgs, registry: &Registry, voice: Voice) -> Result<Exit
             write_student(out, &graded.grade, graded.report.as_ref(), &told).map_err(|e| e.to_string())
         });
         steps.observe(Event::Steps(1));
+        if let (true, Ok(graded)) = (voice.verbose, graded) {
+            tell(&one_line(&submission.id, graded));
+        }
         match (graded, written) {
             (Err(Failure::Stopped), _) | (_, Ok(())) => Ok(()),
             (_, Err(why)) => {
@@ -159,6 +162,12 @@ pub fn grade(args: &GradeArgs, registry: &Registry, voice: Voice) -> Result<Exit
 /// What is said where nothing keeps a submission from the rest of the machine.
 const UNPROTECTED: &str = "WARNING: submissions that are not WebAssembly run WITHOUT a sandbox, and can read and \
     write whatever you can";
+
+/// A submission as it is done.
+fn one_line(id: &str, Graded { grade, took, .. }: &Graded) -> String {
+    let (score, max) = (grade.score, grade.max);
+    format!("{id}: {score} of {max} (built in {:.1} s, measured in {:.1} s)", took.build_s, took.measure_s)
+}
 
 /// What a student's own grade means.
 fn own_exit(grades: &[Grade], whole: bool) -> Exit {

@@ -2,6 +2,7 @@
 
 use super::deviation::Free;
 use super::parts::At;
+use crate::bsdf::Direction;
 use crate::cause::Cause::{
     self, ConstantFactor, EtaSide, FresnelArgument, HalfVectorJacobian, ImplementationDrift, Masking,
     NdfMeasure, NdfVndfMismatch, Normalization, RefractionJacobian, SwappedArguments, TransportMode, Weight,
@@ -77,6 +78,31 @@ fn coated_metal(at: &At) -> Option<f64> {
 fn below_coat(at: &At) -> Option<f64> {
     at.half()?;
     Some(fresnel::refracted_cosine(at.cos_i(), at.parts.eta?)? / at.cos_i())
+}
+
+/// F of light polarised perpendicular to the plane of incidence, over that of both.
+fn perpendicular_alone(at: &At) -> Option<f64> {
+    let (Fresnel::Dielectric(eta), cos) = (at.parts.fresnel?, at.half()?.cos_o.min(1.0)) else { return None };
+    Some(fresnel::dielectric_polarised(cos, eta)[0] / fresnel::dielectric(cos, eta))
+}
+
+/// Smith's Λ where tan θ of `w` is another number.
+fn lambda_of(at: &At, tan: f64) -> Option<f64> {
+    let w = Direction::new(tan, 0.0, 1.0).normalized();
+    Some(1.0 / at.g1(w)? - 1.0)
+}
+
+/// G2 with sin θ in place of tan θ, over G2; of one roughness.
+fn masked_by_sines(at: &At) -> Option<f64> {
+    at.parts.distribution.as_ref().filter(|d| d.alpha().is_isotropic())?;
+    let sin = |w: Direction| w.x.hypot(w.y);
+    Some(1.0 / (1.0 + lambda_of(at, sin(at.wo))? + lambda_of(at, sin(at.wi))?) / at.g2()?)
+}
+
+/// G2 with Λ of the half vector twice, over G2.
+fn masked_by_half_vector(at: &At) -> Option<f64> {
+    let of_h = 1.0 / at.g1(at.half()?.m)? - 1.0;
+    Some(1.0 / (1.0 + 2.0 * of_h) / at.g2()?)
 }
 
 /// G1 of grooves.
@@ -369,6 +395,12 @@ pub const VALUE: &[Mistake] = &[
         "multiply by F(wo·h) once",
     ),
     exact(
+        perpendicular_alone,
+        FresnelArgument,
+        "has Rs where Rp must be: F is that of one polarisation",
+        "Rp has η on the other side: (η cos θi − cos θt)/(η cos θi + cos θt)",
+    ),
+    exact(
         coated_metal,
         EtaSide,
         "takes the metal's index relative to a coat of 1.5 that is not there",
@@ -397,6 +429,18 @@ pub const VALUE: &[Mistake] = &[
         Masking,
         "has G1(wi) where G2(wo, wi) must be: masking is missing",
         "multiply by the masking of wo",
+    ),
+    exact(
+        masked_by_sines,
+        Masking,
+        "has sin θ where tan θ must be, in the masking function",
+        "Smith's Λ is a function of α tan θ",
+    ),
+    exact(
+        masked_by_half_vector,
+        Masking,
+        "takes the masking function at the half vector, where wo and wi must be",
+        "G2 masks wo and shadows wi: give Λ their angles to the normal",
     ),
     power(|at| at.g2(), Masking, "has G2(wo, wi) to a wrong power", "multiply by G2 once"),
     exact(

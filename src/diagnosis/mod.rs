@@ -26,6 +26,7 @@ mod profile;
 mod regression;
 mod sampler;
 mod shares;
+mod side_by_side;
 mod subjects;
 mod support;
 mod textbook;

@@ -2,6 +2,7 @@
 
 use super::lobes::{known, share_of_one};
 use super::parts::Parts;
+use super::side_by_side::{self, used};
 use super::view::View;
 use crate::bsdf::{self, Direction, Spectrum, Subject, SubjectKind, Transport};
 use crate::models::microfacet::NormalSampling;
@@ -83,8 +84,10 @@ impl Textbook {
         let mut all: Vec<(f64, Self)> = Vec::new();
         let mut consider = |mut book: Self| {
             book.agrees = book.agreement(view);
-            let known = book.parameters.0.keys().filter(|name| view.parameters.0.contains_key(*name));
-            let known = known.count() as f64 / view.parameters.0.len().max(1) as f64;
+            // A name that stands for nothing in a model does not speak for it.
+            let known =
+                registry().model(&book.name).map_or(0, |m| used(&m, &book.parameters, &view.parameters));
+            let known = known as f64 / view.parameters.0.len().max(1) as f64;
             // Which function agrees says more than names do; names decide among
             // models that agree alike.
             let agrees = book.agrees;
@@ -100,6 +103,10 @@ impl Textbook {
                 let books = combinations(model, &view.parameters);
                 books.iter().filter_map(|p| Self::new(model.name(), p)).for_each(&mut consider);
             }
+        }
+        if view.description.kind == SubjectKind::Bsdf {
+            let blends = side_by_side::candidates(registry(), &view.parameters);
+            blends.iter().filter_map(|p| Self::new(side_by_side::NAME, p)).for_each(&mut consider);
         }
         // Where nothing is declared, numbers are those that fit.
         if !view.declares_numbers {
@@ -301,7 +308,10 @@ fn taken_apart(
     subject: &Arc<dyn Subject>,
     channels: usize,
 ) -> (Parts, Vec<Lobe>) {
-    let (parts, lobes) = known(name, p);
+    let (parts, lobes) = match name {
+        side_by_side::NAME => side_by_side::lobes(registry(), p).unwrap_or_default(),
+        _ => known(name, p),
+    };
     if !lobes.is_empty() {
         return (parts, lobes);
     }

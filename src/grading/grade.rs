@@ -5,7 +5,7 @@ use crate::bsdf::Transport;
 use crate::checks::{Effect, Verdict};
 use crate::evidence::Place;
 use crate::plugins::Incident;
-use crate::report::{Diagnosis, WoAngles};
+use crate::report::{Diagnosis, WoAngles, as_committed};
 use schemars::JsonSchema;
 use serde::{Deserialize, Serialize};
 use std::collections::BTreeMap;
@@ -13,8 +13,14 @@ use std::collections::BTreeMap;
 /// The version of this format.
 pub const GRADE_VERSION: u32 = 1;
 
+/// The JSON Schema of grade.json as it is committed.
+pub fn schema_text() -> String {
+    as_committed(&schemars::schema_for!(Grade).to_value())
+}
+
 /// The grade of a submission.
 #[derive(Clone, Debug, PartialEq, Serialize, Deserialize, JsonSchema)]
+#[schemars(title = "gonio grade")]
 pub struct Grade {
     /// Version of this format.
     pub grade_version: u32,

@@ -15,6 +15,7 @@ use crate::suite::{Case, Plan};
 use std::path::Path;
 use std::sync::Arc;
 use std::sync::atomic::{AtomicBool, Ordering};
+use std::time::Instant;
 
 /// What is asked for besides the rubric.
 #[derive(Clone)]
@@ -50,8 +51,17 @@ pub struct Graded {
     pub grade: Grade,
     /// What was measured, unless it is broken.
     pub report: Option<Report>,
-    /// Whether anything was measured now.
-    pub measured: bool,
+    /// What it took now: nothing where all was kept.
+    pub took: Took,
+}
+
+/// Wall time in seconds.
+#[derive(Clone, Copy, Debug, Default, PartialEq)]
+pub struct Took {
+    /// To build and open it.
+    pub build_s: f64,
+    /// To measure and diagnose it.
+    pub measure_s: f64,
 }
 
 /// What stands in the way of a grade and is not the submission's fault.
@@ -115,7 +125,7 @@ impl Grader {
                 // It has no digest, and is looked at again the next time.
                 let state = State { submission: String::new(), terms: self.terms.clone() };
                 let grade = self.grade_of(submission, &Measured::nothing());
-                return finish(folder, state, Grade { broken: Some(why), ..grade }, None, true);
+                return finish(folder, state, Grade { broken: Some(why), ..grade }, None, Took::default());
             }
         };
         let state = State { submission: prepared.digest.clone(), terms: self.terms.clone() };
@@ -124,7 +134,7 @@ impl Grader {
         if let Some(kept) = kept.as_ref().filter(|kept| kept.state == state)
             && let Ok(grade) = self.rescored(submission, kept)
         {
-            return finish(folder, state, grade, kept.report.clone(), false);
+            return finish(folder, state, grade, kept.report.clone(), Took::default());
         }
         self.measure(submission, folder, &prepared, state, kept)
     }
@@ -137,7 +147,10 @@ impl Grader {
         state: State,
         kept: Option<Kept>,
     ) -> Result<Graded, Failure> {
-        let plan = match self.planned(prepared) {
+        let begun = Instant::now();
+        let planned = self.planned(prepared);
+        let mut took = Took { build_s: begun.elapsed().as_secs_f64(), measure_s: 0.0 };
+        let plan = match planned {
             Ok(plan) => plan,
             Err(why) => {
                 Kept::forget(folder)?;
@@ -145,7 +158,7 @@ impl Grader {
                     broken: Some(why),
                     ..self.of_prepared(submission, prepared, &Measured::nothing())
                 };
-                return finish(folder, state, grade, None, true);
+                return finish(folder, state, grade, None, took);
             }
         };
         let earlier = kept.and_then(|kept| kept.report);
@@ -171,6 +184,7 @@ impl Grader {
             return Err(Failure::Stopped);
         }
         files?;
+        took.measure_s = begun.elapsed().as_secs_f64() - took.build_s;
         // What it does at its end is told too.
         drop(plan);
         write_report(folder, &report)?;
@@ -178,7 +192,7 @@ impl Grader {
         let diagnoses = report.diagnoses.iter().map(|d| Diagnosis { profile: None, ..d.clone() }).collect();
         let mut grade = Grade { diagnoses, ..self.of_prepared(submission, prepared, &measured) };
         grade.review.extend(report.partial.clone());
-        finish(folder, state, grade, Some(report), true)
+        finish(folder, state, grade, Some(report), took)
     }
 
     /// Measures the cases of one item again, by its checks alone; nothing is written. `Err`
@@ -291,9 +305,9 @@ fn finish(
     state: State,
     grade: Grade,
     report: Option<Report>,
-    measured: bool,
+    took: Took,
 ) -> Result<Graded, Failure> {
     let kept = Kept { state, grade, report };
     kept.keep(folder)?;
-    Ok(Graded { grade: kept.grade, report: kept.report, measured })
+    Ok(Graded { grade: kept.grade, report: kept.report, took })
 }

@@ -14,8 +14,8 @@ mod submissions;
 
 pub use crate::plugins::{Incident, Phase};
 pub use class::{folder_of, grade_all, kept};
-pub use grade::{Broken, GRADE_VERSION, Grade, Hints, ItemGrade, ItemKind, Lost};
-pub use grader::{Failure, Graded, Grader, Wishes};
+pub use grade::{Broken, GRADE_VERSION, Grade, Hints, ItemGrade, ItemKind, Lost, schema_text};
+pub use grader::{Failure, Graded, Grader, Took, Wishes};
 pub use output::{Class, Export, Fairness, System, Told, class, file_name, one, write_class, write_student};
 pub use plan::{Measurement, Planned};
 pub use rubric::{Credit, Item, Language, Route, Rubric, SandboxTerms, load};

@@ -65,7 +65,7 @@ impl Plugins {
             Err(why) => return Ok(broken(name, why)),
         };
         let description = plugin.hello.model(file, wanted).map_err(|why| format!("`{file}` {why}"))?.clone();
-        Ok(model_of(&plugin, &description, name))
+        Ok(model_of(&plugin, &description, name, true))
     }
 
     /// The models of the plugin `file` and what they are, where it has several.
@@ -88,20 +88,21 @@ impl Plugins {
 }
 
 /// The models that a plugin offers, each called as it calls them; a process is in `sandbox`.
+/// They are held to the conventions that they declare: what contradicts them is a mistake.
 ///
 /// # Errors
 /// Why it cannot be opened.
 pub fn offered(named: &Named, limits: &Limits, sandbox: &Arc<Sandbox>) -> Result<Vec<Model>, String> {
     let opened = named.route(limits, Some(sandbox)).and_then(|route| Plugin::open("it", route, limits));
     let plugin = Arc::new(opened.map_err(|fault| fault.to_string())?);
-    Ok(plugin.hello.models.iter().map(|model| model_of(&plugin, model, &model.name)).collect())
+    Ok(plugin.hello.models.iter().map(|model| model_of(&plugin, model, &model.name, false)).collect())
 }
 
-/// A model of a plugin, which is called so.
-fn model_of(plugin: &Arc<Plugin>, description: &ModelDescription, name: &str) -> Model {
+/// A model of a plugin, which is called so; its conventions are `probed`.
+fn model_of(plugin: &Arc<Plugin>, description: &ModelDescription, name: &str, probed: bool) -> Model {
     let (plugin, declaring, called) = (plugin.clone(), description.clone(), name.to_string());
     let model = Model::dynamic(name, description.doc.clone(), move |parameters| {
-        let made = Foreign::create(&plugin, &declaring, parameters_json(parameters));
+        let made = Foreign::create(&plugin, &declaring, parameters_json(parameters), probed);
         Ok(match made {
             Ok(subject) => Arc::new(subject) as Arc<dyn Subject>,
             Err(why) => Arc::new(Broken { name: called.clone(), why }),

@@ -51,11 +51,13 @@ thread_local! {
 }
 
 impl Foreign {
-    /// Makes a subject of `model` with `parameters` (JSON), and probes its conventions.
+    /// Makes a subject of `model` with `parameters` (JSON). Its conventions are `probed`, or
+    /// held to be those that it declares.
     pub fn create(
         plugin: &Arc<Plugin>,
         model: &ModelDescription,
         parameters: String,
+        probed: bool,
     ) -> Result<Self, SubjectError> {
         static NUMBER: AtomicU64 = AtomicU64::new(0);
         let made = Arc::new(Made {
@@ -69,7 +71,8 @@ impl Foreign {
             model.describe(&plugin.name, created.describe.as_deref())
         })?;
         let mut subject = Self { made, description, conventions: declared };
-        let (found, contradictions) = probe::conventions(&subject, declared);
+        let (found, contradictions) =
+            if probed { probe::conventions(&subject, declared) } else { (declared, Vec::new()) };
         // What ended under the probe is met again by the measurement, which tells it.
         plugin.forgive(subject.made.number);
         subject.conventions = found;

@@ -38,5 +38,6 @@ pub use plots::{
 pub(crate) use plots::{diagnosis_picture, shortened};
 pub use record::{Recording, record};
 pub use saved::{FileError, evidence_path, read_evidence, write_evidence, write_whole};
+pub(crate) use schema::as_committed;
 pub use schema::{schema, schema_text};
 pub use terminal::{Look, comparison, diagnoses, summary, symbol};

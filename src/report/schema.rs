@@ -7,9 +7,14 @@ pub fn schema() -> serde_json::Value {
     schemars::schema_for!(Report).to_value()
 }
 
-/// The schema as it is committed: indented, with a newline at its end.
+/// The schema as it is committed.
 pub fn schema_text() -> String {
-    format!("{:#}\n", schema())
+    as_committed(&schema())
+}
+
+/// A schema indented, with a newline at its end.
+pub(crate) fn as_committed(schema: &serde_json::Value) -> String {
+    format!("{schema:#}\n")
 }
 
 #[cfg(test)]

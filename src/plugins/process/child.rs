@@ -233,6 +233,8 @@ fn manner(status: ExitStatus) -> String {
         Some(8) => "SIGFPE, a division by zero of integers",
         Some(9) => "SIGKILL, perhaps for want of memory",
         Some(11) => "SIGSEGV, a bad address",
+        Some(25) => "SIGXFSZ, a file too large",
+        Some(31) => "SIGSYS, a call of the system that does not exist here",
         Some(signal) => return format!("was killed by signal {signal}"),
     };
     format!("crashed ({name})")

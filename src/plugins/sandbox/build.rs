@@ -4,7 +4,7 @@ use super::fold::folded;
 use super::guard::{ENDED, VOICE};
 use super::incident::Phase;
 use super::isolation::Isolation;
-use super::mounts::{SOURCE, WORK};
+use super::mounts::SOURCE;
 use super::settings::{Sandbox, words};
 use std::ffi::OsStr;
 use std::io::Read;
@@ -54,7 +54,7 @@ impl Sandbox {
         // Without bubblewrap the copy is on the disk, for as long as this takes.
         let (source, copy, sandbox);
         let (from, to, within) = match &self.isolation {
-            Isolation::Bubblewrap { .. } => (OsStr::new(SOURCE), OsStr::new(WORK), self),
+            Isolation::Bubblewrap { .. } => (OsStr::new(SOURCE), OsStr::new(self.work()), self),
             Isolation::Limits { .. } => {
                 copy = tempfile::tempdir().map_err(|e| failed(format!("no temporary folder: {e}")))?;
                 source = self

@@ -1,11 +1,14 @@
 //! The process between gonio and a sandbox: it counts what the sandbox takes, and ends all
 //! of it at once where that is too much, or where nobody reads its standard error any more.
 
+use super::confine::BEGINS;
 use super::incident::Log;
 use super::mounts::ENVIRONMENT;
 use super::rules::Rules;
+use super::seccomp;
 use super::streams;
 use super::taken::Where;
+use super::watch::Watch;
 use crate::plugins::process::{descendants, end_as, end_descendants};
 use rustix::event::{PollFd, PollFlags, Timespec, poll};
 use rustix::fs::{MemfdFlags, memfd_create};
@@ -38,9 +41,6 @@ const ROUND: Duration = Duration::from_millis(25);
 /// How often incidents are written.
 const WRITE: Duration = Duration::from_secs(1);
 
-/// Threads for each process that is allowed.
-const THREADS: u64 = 8;
-
 /// Runs the command after the first `--` of `words`, in bubblewrap with what stands before
 /// as its arguments, if there is a `bubblewrap`. Ends as the command does, once all that it
 /// started has ended too.
@@ -49,7 +49,10 @@ pub fn guard(rules: &Rules, log: Option<&Path>, bubblewrap: Option<&Path>, words
     let (options, command) = (parts.next().unwrap_or_default(), parts.next().unwrap_or_default());
     // A session of its own, and its orphans, as supervise.rs says.
     let alone = setsid().map(drop).and(set_child_subreaper(Some(getpid())));
-    let started = alone.map_err(io::Error::from).and_then(|()| start(bubblewrap, options, command));
+    let started = alone
+        .map_err(io::Error::from)
+        .and_then(|()| seccomp::keep_no_files())
+        .and_then(|()| start(bubblewrap, options, command));
     let mut guard = match started {
         Ok((child, hello, first)) => Guard {
             rules,
@@ -58,6 +61,7 @@ pub fn guard(rules: &Rules, log: Option<&Path>, bubblewrap: Option<&Path>, words
             first,
             hello: Some(hello),
             places: None,
+            watch: None,
             since: Instant::now(),
             written: Instant::now(),
         },
@@ -67,15 +71,31 @@ pub fn guard(rules: &Rules, log: Option<&Path>, bubblewrap: Option<&Path>, words
         }
     };
     let status = guard.run();
+    // Bubblewrap tells of a signal as shells do.
+    let code = status.and_then(|status| status.exit_status()).filter(|_| bubblewrap.is_some());
+    let signal = match code {
+        Some(code @ 129..=192) => Some(code - 128),
+        _ => status.and_then(|status| status.terminating_signal()),
+    };
+    if let Some(what) = signal.and_then(by_signal) {
+        guard.log.note(what);
+    }
     guard.log.flush();
     end_descendants();
-    match status {
-        None => ENDED,
-        // As shells and bubblewrap tell of a signal.
-        Some(status) => match status.exit_status().filter(|_| bubblewrap.is_some()) {
-            Some(code @ 129..=192) => end_by(code - 128),
-            _ => end_as(status),
-        },
+    match (status, signal) {
+        (None, _) => ENDED,
+        (_, Some(signal)) => end_by(signal),
+        (Some(status), None) => end_as(status),
+    }
+}
+
+/// What the kernel ends a process for by this signal.
+fn by_signal(signal: i32) -> Option<&'static str> {
+    match signal {
+        libc::SIGSYS => Some("called the system by another architecture's door"),
+        libc::SIGXCPU => Some("was ended for its processor time"),
+        libc::SIGXFSZ => Some("was ended for a file that is too large"),
+        _ => None,
     }
 }
 
@@ -151,6 +171,7 @@ struct Guard<'a> {
     hello: Option<OwnedFd>,
     /// Where to look for what it takes, once it has begun.
     places: Option<Where>,
+    watch: Option<Watch>,
     since: Instant,
     written: Instant,
 }
@@ -175,6 +196,9 @@ impl Guard<'_> {
             waits.extend(self.hello.as_ref().map(|fd| PollFd::new(fd, PollFlags::IN)));
             let left = ROUND.saturating_sub(counted.elapsed());
             let left = Timespec { tv_sec: 0, tv_nsec: i64::from(left.subsec_nanos()) };
+            waits.extend(
+                self.watch.as_ref().map(|watch| PollFd::from_borrowed_fd(watch.file(), PollFlags::IN)),
+            );
             let _ = poll(&mut waits, Some(&left));
             if waits[0].revents().contains(PollFlags::ERR) {
                 self.end();
@@ -183,20 +207,25 @@ impl Guard<'_> {
             if self.hello.is_some() && waits.last().is_some_and(|wait| !wait.revents().is_empty()) {
                 self.begins();
             }
-            if counted.elapsed() >= ROUND {
+            let answered = self.watch.as_ref().zip(self.places.as_ref());
+            let mut why =
+                answered.and_then(|(watch, places)| watch.answer(self.rules, places, &mut self.log));
+            let count = counted.elapsed() >= ROUND;
+            if count {
                 counted = Instant::now();
-                if let Some(why) = self.too_much() {
-                    self.end();
-                    self.log.note(&format!("was ended for {why}"));
-                    // Whoever should read it may be waiting for this process to end.
-                    let _ = rustix::io::ioctl_fionbio(rustix::stdio::stderr(), true);
-                    let _ = writeln!(io::stderr(), "\n{VOICE}{why}");
-                    return None;
-                }
-                if self.written.elapsed() >= WRITE {
-                    self.log.flush();
-                    self.written = Instant::now();
-                }
+                why = why.or_else(|| self.too_much());
+            }
+            if let Some(why) = why {
+                self.end();
+                self.log.note(&format!("was ended for {why}"));
+                // Whoever should read it may be waiting for this process to end.
+                let _ = rustix::io::ioctl_fionbio(rustix::stdio::stderr(), true);
+                let _ = writeln!(io::stderr(), "\n{VOICE}{why}");
+                return None;
+            }
+            if self.written.elapsed() >= WRITE {
+                self.log.flush();
+                self.written = Instant::now();
             }
         }
     }
@@ -204,10 +233,15 @@ impl Guard<'_> {
     /// The confining step is inside.
     fn begins(&mut self) {
         let Some(hello) = self.hello.take() else { return };
-        if streams::receive(&hello).is_ok_and(|(message, _)| message.is_empty()) {
+        let (message, mut files) = streams::receive(&hello).unwrap_or_default();
+        if message.is_empty() {
             // It has ended before.
             return;
         }
+        if message != BEGINS {
+            let _ = writeln!(io::stderr(), "{VOICE}{message}");
+        }
+        self.watch = files.pop().map(|listener| Watch::new(listener, self.rules));
         self.since = Instant::now();
         self.places = Some(match &mut self.first {
             Some(pipe) => Where::sandbox(first_process(pipe).unwrap_or(0)),
@@ -227,11 +261,8 @@ impl Guard<'_> {
         }
         let taken = places.taken();
         let mebibytes = |bytes: u64| format!("{} MiB", bytes >> 20);
-        if taken.processes > rules.processes {
-            return Some(format!("more than {} processes at a time", rules.processes));
-        }
-        if taken.threads > rules.processes * THREADS {
-            return Some(format!("more than {} threads at a time", rules.processes * THREADS));
+        if let Some(why) = taken.crowded(rules) {
+            return Some(why);
         }
         if taken.memory > rules.memory {
             return Some(format!("more than {} of memory", mebibytes(rules.memory)));
@@ -239,7 +270,7 @@ impl Guard<'_> {
         if let Some(most) = rules.processor.filter(|most| taken.processor > Duration::from_secs(*most)) {
             return Some(format!("more than {most} s of processor time"));
         }
-        if places.disk() >= rules.disk {
+        if places.disk(&rules.work) >= rules.disk {
             return Some(format!("more than {} of files", mebibytes(rules.disk)));
         }
         None

@@ -10,7 +10,7 @@ use std::path::{Path, PathBuf};
 
 /// Kinds of incidents that one process writes down: who tries a thousand paths has been
 /// seen after some dozens.
-const KINDS: usize = 60;
+const KINDS: usize = 40;
 
 /// Characters of one of them.
 const LENGTH: usize = 200;

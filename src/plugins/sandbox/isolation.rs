@@ -67,11 +67,7 @@ fn find(unwatched: Option<String>) -> Isolation {
     let version = String::from_utf8_lossy(&version.stdout).trim().replace("bubblewrap ", "");
     let with =
         |unwatched| Isolation::Bubblewrap { version: version.clone(), program: program.clone(), unwatched };
-    let tried = |isolation: &Isolation| {
-        let mut sandbox = Sandbox::with("/usr", isolation.clone());
-        sandbox.allowance.clock = Some(std::time::Duration::from_secs(10));
-        sandbox.works()
-    };
+    let tried = |isolation: &Isolation| Sandbox::with("/usr", isolation.clone()).works();
     let mut isolation = with(unwatched.clone());
     let mut works = tried(&isolation);
     if let (None, Err(why)) | (None, Ok(why)) = (&unwatched, &works)

@@ -6,17 +6,22 @@
 //! everything at once; confining sets what a process can only set for itself.
 
 mod build;
+mod calls;
 mod confine;
+mod filter;
 mod fold;
 mod guard;
 mod incident;
 mod isolation;
 mod mounts;
+mod places;
 mod programs;
 mod rules;
+mod seccomp;
 mod settings;
 mod streams;
 mod taken;
+mod watch;
 
 pub use build::BuildFailure;
 pub use confine::confine;

@@ -3,8 +3,9 @@
 use std::ffi::{OsStr, OsString};
 use std::path::{Path, PathBuf};
 
-/// Where the folder is, or its copy.
-pub const WORK: &str = "/work";
+/// Where the folder is, or its copy; the second where this machine has something at the
+/// first that the program may read.
+const WORK: [&str; 2] = ["/work", "/submission"];
 
 /// Where a build finds what it copies.
 pub const SOURCE: &str = "/source";
@@ -53,6 +54,12 @@ pub struct Wanted<'a> {
     pub gonio: &'a Path,
 }
 
+/// Where the folder is, beside what it may read.
+pub fn work(open: &[PathBuf]) -> &'static str {
+    let taken = open.iter().any(|path| path.starts_with(WORK[0]));
+    WORK[usize::from(taken)]
+}
+
 /// The arguments of bubblewrap.
 pub fn arguments(wanted: &Wanted) -> Vec<OsString> {
     let mut all = Arguments(Vec::new());
@@ -62,21 +69,23 @@ pub fn arguments(wanted: &Wanted) -> Vec<OsString> {
         all.add(&["--setenv", key, value]);
     }
     all.add(&["--setenv", "PATH"]).path(wanted.path);
+    let disk = wanted.disk.to_string();
+    // Before what it may read, which may be there.
+    all.add(&["--size", &disk, "--tmpfs", "/tmp"]);
     seen(&mut all, wanted);
     all.add(&["--dev", "/dev", "--remount-ro", "/dev"]);
     // Where gonio is root, nobody in here is root outside, and the files of /proc/sys are
     // root's: without this, it could set the kernel's core_pattern.
     all.add(&["--proc", "/proc", "--remount-ro", "/proc"]);
-    let disk = wanted.disk.to_string();
-    all.add(&["--size", &disk, "--tmpfs", "/tmp"]);
+    let work = work(wanted.open);
     if wanted.build {
         all.add(&["--ro-bind"]).path(wanted.folder).add(&[SOURCE]);
-        all.add(&["--size", &disk, "--tmpfs", WORK]);
+        all.add(&["--size", &disk, "--tmpfs", work]);
     } else {
-        all.add(&["--ro-bind"]).path(wanted.folder).add(&[WORK]);
+        all.add(&["--ro-bind"]).path(wanted.folder).add(&[work]);
     }
     all.add(&["--ro-bind"]).path(wanted.gonio).add(&[GONIO]);
-    all.add(&["--remount-ro", "/", "--chdir", WORK]);
+    all.add(&["--remount-ro", "/", "--chdir", work]);
     all.0
 }
 

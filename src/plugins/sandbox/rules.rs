@@ -13,7 +13,7 @@ pub struct Rules {
     pub library: bool,
     /// Whether its calls of the system are watched.
     pub watched: bool,
-    /// Bytes: address space of a process, memory of all.
+    /// Bytes of memory of all; half more of a process's address space.
     pub memory: u64,
     /// Seconds of processor time of all.
     pub processor: Option<u64>,
@@ -23,6 +23,8 @@ pub struct Rules {
     pub processes: u64,
     /// Bytes of files.
     pub disk: u64,
+    /// Where the folder is.
+    pub work: String,
     /// Folders that it may read beside those that every sandbox has.
     pub open: Vec<String>,
 }

@@ -14,10 +14,13 @@ use std::time::Duration;
 /// What all processes of a sandbox may take together.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub struct Allowance {
-    /// Of processor time; `None` for as much as it likes.
+    /// Of processor time while it is built; `None` for as much as it likes.
     pub processor: Option<Duration>,
-    /// Of the clock.
+    /// Of the clock while it is built.
     pub clock: Option<Duration>,
+    /// Of processor time of one instance while it runs. gonio limits each of its calls
+    /// anyway; this is for what goes on between them.
+    pub run: Option<Duration>,
     /// Bytes of memory while it is built; while it runs, those of [`Limits`].
     pub memory: u64,
     /// Processes at a time.
@@ -35,6 +38,7 @@ impl Default for Allowance {
         Self {
             processor: minute,
             clock: minute,
+            run: None,
             memory: Limits::default().memory,
             processes: 64,
             disk: 256 << 20,
@@ -54,8 +58,7 @@ pub struct Sandbox {
     pub read: Vec<PathBuf>,
     /// Files and folders that it must not see, wherever they are.
     pub hidden: Vec<PathBuf>,
-    /// What it may take. While it runs, `processor` and `clock` are for each of its
-    /// processes from its start.
+    /// What it may take.
     pub allowance: Allowance,
     /// A file that incidents are appended to.
     pub log: Option<PathBuf>,
@@ -110,15 +113,20 @@ impl Sandbox {
             format!("the folder `{}` of the sandbox cannot be read: {e}", self.folder.display())
         })?;
         let open: Vec<PathBuf> = self.readable().into_iter().chain(mounts).collect();
+        let (processor, clock) = match phase {
+            Phase::Build => (self.allowance.processor, self.allowance.clock),
+            Phase::Run => (self.allowance.run, None),
+        };
         let rules = Rules {
             phase,
             library,
             watched: self.isolation.is_watched(),
             memory,
-            processor: self.allowance.processor.map(|t| t.as_secs().max(1)),
-            clock: self.allowance.clock.map(|t| t.as_secs_f64()),
+            processor: processor.map(|t| t.as_secs().max(1)),
+            clock: clock.map(|t| t.as_secs_f64()),
             processes: self.allowance.processes,
             disk: self.allowance.disk,
+            work: mounts::work(&open).into(),
             open: open.iter().map(|path| path.to_string_lossy().into_owned()).collect(),
         };
         let rules = serde_json::to_string(&rules).map_err(|e| e.to_string())?;
@@ -162,7 +170,7 @@ impl Sandbox {
             return Ok(path);
         }
         match path.strip_prefix(&folder) {
-            Ok(rest) => Ok(Path::new(mounts::WORK).join(rest)),
+            Ok(rest) => Ok(Path::new(self.work()).join(rest)),
             Err(_) => Err(format!(
                 "`{}` is not in the folder `{}` that the sandbox shows",
                 path.display(),
@@ -179,6 +187,11 @@ impl Sandbox {
             _ => path.clone(),
         });
         expanded.filter_map(|path| path.canonicalize().ok()).collect()
+    }
+
+    /// Where it has its folder while it is built.
+    pub(super) fn work(&self) -> &'static str {
+        mounts::work(&self.readable())
     }
 
     /// Writes down that something was tried, seen from outside.

@@ -1,10 +1,14 @@
 //! What all processes of a sandbox take together.
 
+use super::rules::Rules;
 use std::path::{Path, PathBuf};
 use std::time::Duration;
 
 /// Length of the kernel's tick for programs: USER_HZ, the same on all of today's machines.
 const TICK: Duration = Duration::from_millis(10);
+
+/// Threads for each process that is allowed.
+const THREADS: u64 = 8;
 
 /// An empty file takes about this much of the kernel's memory.
 const FILE: u64 = 1024;
@@ -64,7 +68,7 @@ impl Where {
     }
 
     /// Bytes of its files.
-    pub fn disk(&self) -> u64 {
+    pub fn disk(&self, work: &str) -> u64 {
         let Self::Sandbox { root } = self else { return 0 };
         let used = |folder: &str| {
             let Ok(now) = rustix::fs::statvfs(root.join(folder)) else { return 0 };
@@ -75,11 +79,20 @@ impl Where {
             now.f_blocks.saturating_sub(now.f_bfree) * now.f_frsize
                 + now.f_files.saturating_sub(now.f_ffree) * FILE
         };
-        used("tmp") + used("work")
+        used("tmp") + used(work.trim_start_matches('/'))
     }
 }
 
 impl Taken {
+    /// What is too many of them, if something is.
+    pub fn crowded(&self, rules: &Rules) -> Option<String> {
+        let (processes, threads) = (rules.processes, rules.processes * THREADS);
+        if self.processes > processes {
+            return Some(format!("more than {processes} processes at a time"));
+        }
+        (self.threads > threads).then(|| format!("more than {threads} threads at a time"))
+    }
+
     /// Adds a process, or of bubblewrap's own only what its children took.
     fn add(&mut self, process: &Path, only_children: bool) {
         let Ok(stat) = std::fs::read(process.join("stat")) else { return };
