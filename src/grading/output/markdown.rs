@@ -140,10 +140,11 @@ fn entity(c: char) -> &'static str {
 
 #[cfg(test)]
 mod tests {
+    use super::super::super::Grade;
     use super::super::examples::{broken, hostile, whole};
     use super::*;
 
-    fn of(grade: &super::super::super::Grade) -> String {
+    fn of(grade: &Grade) -> String {
         markdown(&Feedback::of(grade, "gonio grade --self rubric.toml ."))
     }
 
@@ -182,7 +183,11 @@ mod tests {
 
     #[test]
     fn hostile_text_opens_nothing() {
-        let text = of(&hostile(""));
+        opens_nothing(&of(&hostile("")));
+        opens_nothing(&of(&Grade { broken: None, ..hostile("") }));
+    }
+
+    fn opens_nothing(text: &str) {
         let mut fence: Option<String> = None;
         for line in text.lines() {
             let ticks: String = line.chars().take_while(|c| *c == '`').collect();
