@@ -147,7 +147,8 @@ fn run(desk: &Desk, more: &str) -> Done {
 /// Files of grades, without what differs from run to run.
 fn results(desk: &Desk, out: &str) -> BTreeMap<String, Vec<u8>> {
     let mut files = desk.files(out);
-    files.retain(|name, _| !name.ends_with("report.json") && !name.starts_with(".lock"));
+    // What was being written when it was killed has no name yet.
+    files.retain(|name, _| !name.contains(".writing-") && !name.ends_with("report.json"));
     for (name, bytes) in desk.files(out).iter().filter(|(name, _)| name.ends_with("report.json")) {
         let report: gonio::report::Report = serde_json::from_slice(bytes).unwrap();
         files.insert(name.clone(), serde_json::to_vec(&report.timeless()).unwrap());

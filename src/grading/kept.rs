@@ -9,7 +9,7 @@ use std::path::Path;
 
 /// The file of a grade.
 pub const GRADE: &str = "grade.json";
-/// The file that says of what the others are. It is written last, and goes first.
+/// The file that says of what the others are; it is written last.
 const STATE: &str = "state.json";
 
 /// What results are of.
@@ -40,18 +40,14 @@ impl Kept {
         Some(Self { state, grade, report })
     }
 
-    /// Says that what a folder holds is true no more.
+    /// Removes what a folder holds, all of which is gonio's own.
     pub fn forget(folder: &Path) -> Result<(), FileError> {
-        match fs::remove_file(folder.join(STATE)) {
+        match fs::remove_dir_all(folder) {
             Err(source) if source.kind() != std::io::ErrorKind::NotFound => {
-                return Err(FileError::Write { path: folder.join(STATE), source });
+                Err(FileError::Write { path: folder.into(), source })
             }
-            _ => {}
+            _ => Ok(()),
         }
-        // What stays behind is written over, or named by nothing.
-        let _ = fs::remove_dir_all(folder.join("evidence"));
-        let _ = fs::remove_file(folder.join(REPORT));
-        Ok(())
     }
 
     /// Writes the grade, and of what it is; the report is there already.
