@@ -159,7 +159,7 @@ fn lost_view<'a>(
 #[cfg(test)]
 mod tests {
     use super::super::examples::{broken, evidence_in, hostile, report, whole};
-    use super::super::pictures::drawn;
+    use super::super::pictures::{Desk, drawn};
     use super::*;
     use crate::grading::Grade;
     use std::path::Path;
@@ -168,7 +168,11 @@ mod tests {
 
     fn of(grade: &Grade, folder: &Path) -> String {
         let feedback = Feedback::of(grade, AGAIN);
-        page(&feedback, &drawn(folder, Some(&report(&["metal:alpha=0.1"])), &feedback), "n0nce")
+        page(
+            &feedback,
+            &drawn(&mut Desk::new(folder), Some(&report(&["metal:alpha=0.1"])), &feedback),
+            "n0nce",
+        )
     }
 
     /// Without the page's own style, and without what pictures say: they escape themselves.
