@@ -20,7 +20,13 @@ const MOST_ROWS: usize = 200;
 const README: &str = "README.md";
 
 /// Writes the folders of all lost items; what was there of others before is gone.
-pub fn write(folder: &Path, grade: &Grade, report: Option<&Report>, told: &Told) -> Result<(), FileError> {
+pub fn write(
+    folder: &Path,
+    grade: &Grade,
+    report: Option<&Report>,
+    told: &Told,
+    desk: &mut Desk,
+) -> Result<(), FileError> {
     let all = folder.join(appeals(&grade.id));
     match std::fs::remove_dir_all(&all) {
         Err(source) if source.kind() != std::io::ErrorKind::NotFound => {
@@ -28,13 +34,12 @@ pub fn write(folder: &Path, grade: &Grade, report: Option<&Report>, told: &Told)
         }
         _ => {}
     }
-    let mut desk = Desk::new(told.measured);
     for item in grade.items.iter().filter(|item| item.is_lost()) {
         let at = all.join(file_name(&item.id));
         let mut lost: Vec<&Lost> = item.lost.iter().collect();
         lost.sort_by(|a, b| clearer(a, b));
         let files = match lost.first() {
-            Some(clearest) => write_files(&at, clearest, told, &mut desk)?,
+            Some(clearest) => write_files(&at, clearest, told, desk)?,
             None => Vec::new(),
         };
         let page = page(grade, item, &lost, &files, report, told);

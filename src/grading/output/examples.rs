@@ -170,7 +170,7 @@ pub fn broken() -> Grade {
         max: 3.0,
         items: vec![
             ItemGrade { cases: 0, passed: 0, ..item("builds", 1.0) },
-            ItemGrade { cases: 0, passed: 0, unmet: Some("builds".into()), ..item("pdf", 2.0) },
+            ItemGrade { passed: 0, unmet: Some("builds".into()), ..item("pdf", 2.0) },
         ],
         ..grade()
     }

@@ -163,6 +163,16 @@ impl<'a> Feedback<'a> {
         passed.map(|i| i.title).collect()
     }
 
+    /// Lost items that there is something to say of.
+    pub fn told(&self) -> impl Iterator<Item = (usize, &LostItem<'a>)> {
+        self.lost.iter().enumerate().filter(|(_, lost)| lost.is_measured)
+    }
+
+    /// Titles of items that could not be measured.
+    pub fn unmeasured(&self) -> Vec<&'a str> {
+        self.lost.iter().filter(|lost| !lost.is_measured).map(|lost| lost.item.title).collect()
+    }
+
     /// Whether there are items that students cannot measure themselves.
     pub fn has_hidden(&self) -> bool {
         self.items.iter().any(|i| i.hidden)

@@ -20,7 +20,11 @@ pub fn markdown(feedback: &Feedback) -> String {
     }
     if !feedback.lost.is_empty() {
         parts.push("## Where points were lost".into());
-        parts.extend(feedback.lost.iter().map(|lost| item(lost, &feedback.causes)));
+        parts.extend(feedback.told().map(|(_, lost)| item(lost, &feedback.causes)));
+        let unmeasured = feedback.unmeasured();
+        parts.extend((!unmeasured.is_empty()).then(|| {
+            format!("Not measured, as the submission could not be: {}.", own(&titles(&unmeasured)))
+        }));
     }
     parts.push(format!("## Points\n\n{}", table(feedback)));
     parts.push(again(feedback));
@@ -40,9 +44,8 @@ fn rubric_text(loss: &str) -> String {
 fn item(lost: &LostItem, causes: &[CauseTold]) -> String {
     let mut parts = vec![format!("### {}: {}", own(lost.item.title), loss(&lost.item))];
     parts.extend(lost.item.text.map(rubric_text));
-    let unmet = lost.unmet.filter(|_| lost.is_measured);
-    parts.extend((!lost.is_measured).then(|| "Not measured, as the submission could not be.".into()));
-    parts.extend(unmet.map(|title| format!("Not scored, as {} earned nothing.", own(&titles(&[title])))));
+    parts
+        .extend(lost.unmet.map(|title| format!("Not scored, as {} earned nothing.", own(&titles(&[title])))));
     let mut lines: Vec<String> = lost.count.iter().map(|count| format!("- {count}")).collect();
     for found in &lost.found {
         let places: Vec<String> = found.places.iter().map(|p| text(p)).collect();
@@ -101,9 +104,9 @@ fn table(feedback: &Feedback) -> String {
 }
 
 fn again(feedback: &Feedback) -> String {
-    let but = if feedback.has_hidden() { " Hidden items are not part of it." } else { "" };
+    let but = if feedback.has_hidden() { "\n\nHidden items are not part of it." } else { "" };
     format!(
-        "To see it yourself, type in the folder of your submission:{but}\n\n{}",
+        "To see it yourself, type in the folder of your submission:\n\n{}{but}",
         fenced("sh", feedback.again)
     )
 }
@@ -137,10 +140,11 @@ fn entity(c: char) -> &'static str {
 
 #[cfg(test)]
 mod tests {
+    use super::super::super::Grade;
     use super::super::examples::{broken, hostile, whole};
     use super::*;
 
-    fn of(grade: &super::super::super::Grade) -> String {
+    fn of(grade: &Grade) -> String {
         markdown(&Feedback::of(grade, "gonio grade --self rubric.toml ."))
     }
 
@@ -170,12 +174,20 @@ mod tests {
     fn what_does_not_build_is_told_with_the_compilers_words() {
         let text = of(&broken());
         assert!(text.contains("**It could not be measured:** it does not build"), "{text}");
+        assert!(
+            text.contains("\n\nNot measured, as the submission could not be: “Title of pdf”.\n"),
+            "{text}"
+        );
         assert!(text.contains("```text\nbrdf.cpp:3:1: error: unknown type name 'flaot'\n"), "{text}");
     }
 
     #[test]
     fn hostile_text_opens_nothing() {
-        let text = of(&hostile(""));
+        opens_nothing(&of(&hostile("")));
+        opens_nothing(&of(&Grade { broken: None, ..hostile("") }));
+    }
+
+    fn opens_nothing(text: &str) {
         let mut fence: Option<String> = None;
         for line in text.lines() {
             let ticks: String = line.chars().take_while(|c| *c == '`').collect();

@@ -23,6 +23,8 @@ struct Page<'a> {
     rows: Vec<Row<'a>>,
     causes: Vec<CauseView<'a>>,
     lost: Vec<LostView<'a>>,
+    /// Titles of items that could not be measured.
+    unmeasured: String,
     unread: Option<&'a str>,
     passed: String,
     style: String,
@@ -78,7 +80,8 @@ pub fn page(feedback: &Feedback, drawn: &Drawn, nonce: &str) -> String {
         max: points(feedback.max),
         rows: rows(feedback),
         causes: feedback.causes.iter().enumerate().map(|(n, cause)| cause_view(n, cause, drawn)).collect(),
-        lost: feedback.lost.iter().enumerate().map(|(n, lost)| lost_view(n, lost, feedback, drawn)).collect(),
+        lost: feedback.told().map(|(n, lost)| lost_view(n, lost, feedback, drawn)).collect(),
+        unmeasured: titles(&feedback.unmeasured()),
         unread: drawn.unread.as_deref(),
         passed: titles(&feedback.passed()),
         style: format!("{STYLE}{OWN_STYLE}"),
@@ -97,7 +100,7 @@ fn cause_anchor(number: usize) -> String {
 
 fn rows<'a>(feedback: &Feedback<'a>) -> Vec<Row<'a>> {
     let row = |item: &super::feedback::ItemTold<'a>| {
-        let at = feedback.lost.iter().position(|lost| lost.item.id == item.id);
+        let at = feedback.told().find(|(_, lost)| lost.item.id == item.id).map(|(number, _)| number);
         let kind = match item.kind {
             ItemKind::Regular => "",
             ItemKind::Bonus => "bonus",
@@ -156,7 +159,7 @@ fn lost_view<'a>(
 #[cfg(test)]
 mod tests {
     use super::super::examples::{broken, evidence_in, hostile, report, whole};
-    use super::super::pictures::drawn;
+    use super::super::pictures::{Desk, drawn};
     use super::*;
     use crate::grading::Grade;
     use std::path::Path;
@@ -165,7 +168,11 @@ mod tests {
 
     fn of(grade: &Grade, folder: &Path) -> String {
         let feedback = Feedback::of(grade, AGAIN);
-        page(&feedback, &drawn(folder, Some(&report(&["metal:alpha=0.1"])), &feedback), "n0nce")
+        page(
+            &feedback,
+            &drawn(&mut Desk::new(folder), Some(&report(&["metal:alpha=0.1"])), &feedback),
+            "n0nce",
+        )
     }
 
     /// Without the page's own style, and without what pictures say: they escape themselves.
@@ -221,24 +228,29 @@ mod tests {
         let at = |part: &str| page.find(part).unwrap_or_else(|| panic!("no {part}"));
         assert!(at("clang++ ended with 1") < at("unknown type name &#39;flaot&#39;"));
         assert!(at("flaot") < at("id=\"points\""));
-        assert!(at("<bdi>Title of builds</bdi> <span") < at("<bdi>Title of pdf</bdi> <span"));
-        assert!(page.contains("Not scored, as <q><bdi>Title of builds</bdi></q> earned nothing."));
+        assert!(page.contains("<p>Not measured, as the submission could not be: “Title of pdf”.</p>"));
+        assert!(at("<bdi>Title of builds</bdi> <span") < at("Not measured"));
     }
 
     #[test]
     fn hostile_text_stays_text_everywhere() {
         let folder = tempfile::tempdir().unwrap();
-        let page = of(&hostile(&evidence_in(folder.path())), folder.path());
-        let markup = markup(&page);
-        for part in ["<script", "<img", "onload=\"", "<!--", "<i>"] {
+        let broken = hostile(&evidence_in(folder.path()));
+        let measured = Grade { broken: None, ..broken.clone() };
+        for grade in [broken, measured] {
+            let page = of(&grade, folder.path());
+            let markup = markup(&page);
+            for part in ["<script", "<img", "onload=\"", "<!--", "<i>"] {
+                let around = || &markup[markup.find(part).unwrap().saturating_sub(200)..];
+                assert!(!markup.contains(part), "{part}: {}", around());
+            }
             assert!(
-                !markup.contains(part),
-                "{part}: {}",
-                &markup[markup.find(part).unwrap().saturating_sub(200)..]
+                markup.matches("&#60;/script&#62;&#60;script&#62;x").count() > 20,
+                "it is shown as it is"
             );
+            assert!(!page.contains("<script") && !page.contains("<img"), "in pictures too");
+            assert_eq!(page.contains("<svg "), grade.broken.is_none());
         }
-        assert!(markup.matches("&#60;/script&#62;&#60;script&#62;x").count() > 20, "it is shown as it is");
-        assert!(page.contains("<svg ") && !page.contains("<script") && !page.contains("<img"));
     }
 
     #[test]

@@ -55,7 +55,7 @@ pub fn telling(check: &str) -> &'static [Kind] {
 }
 
 /// Draws them from what was measured in the submission's folder.
-pub fn drawn(measured: &Path, report: Option<&Report>, feedback: &Feedback) -> Drawn {
+pub fn drawn(desk: &mut Desk, report: Option<&Report>, feedback: &Feedback) -> Drawn {
     let mut drawn = Drawn::default();
     let mut left = MOST;
     let diagnoses = report.map_or(&[][..], |report| &report.diagnoses);
@@ -70,7 +70,6 @@ pub fn drawn(measured: &Path, report: Option<&Report>, feedback: &Feedback) -> D
             left -= 1;
         }
     }
-    let mut desk = Desk::new(measured);
     let mut seen = BTreeSet::new();
     for lost in feedback.lost.iter().filter(|l| !l.found.is_empty()) {
         if left == 0 {
@@ -82,7 +81,7 @@ pub fn drawn(measured: &Path, report: Option<&Report>, feedback: &Feedback) -> D
             left -= 1;
         }
     }
-    drawn.unread = desk.unread;
+    drawn.unread.clone_from(&desk.unread);
     drawn
 }
 
@@ -105,9 +104,10 @@ fn counted<'a>(
 /// Tells pictures apart: the file and what is drawn of it.
 type Key = (String, Kind);
 
-/// Evidence at hand.
+/// Evidence at hand, and what was drawn of it: what several items show is drawn once.
 pub struct Desk<'a> {
     measured: &'a Path,
+    cases: BTreeMap<(Key, bool, bool), Option<Picture>>,
     read: BTreeMap<String, Option<Evidence>>,
     unread: Option<String>,
 }
@@ -115,7 +115,7 @@ pub struct Desk<'a> {
 impl<'a> Desk<'a> {
     /// Of the submission that was measured in this folder.
     pub fn new(measured: &'a Path) -> Self {
-        Self { measured, read: BTreeMap::new(), unread: None }
+        Self { measured, cases: BTreeMap::new(), read: BTreeMap::new(), unread: None }
     }
 
     /// Reads evidence once; what cannot be read is remembered.
@@ -158,17 +158,23 @@ impl<'a> Desk<'a> {
 
     /// A picture of a case.
     pub fn case(&mut self, lost: &Lost, profile: Option<&Profile>, kind: Kind) -> Option<Picture> {
-        let evidence = self.read(lost.evidence.as_deref()?)?;
+        let path = lost.evidence.as_deref()?;
         let fit = lost.effect.as_ref().filter(|_| lost.check == "goodness-of-fit");
+        let key = ((path.to_string(), kind), fit.is_some(), profile.is_some());
+        if let Some(picture) = self.cases.get(&key) {
+            return picture.clone();
+        }
         let case = Pictured {
             index: 0,
             group: "",
-            evidence,
+            evidence: self.read(path)?,
             suspicious: true,
             root_d: fit.map(|e| e.value.0),
             diagnosed: profile,
         };
-        pictures_of_case(&case, &[case], |k| k == kind).pop()
+        let picture = pictures_of_case(&case, &[case], |k| k == kind).pop();
+        self.cases.insert(key, picture.clone());
+        picture
     }
 
     /// A curve over the directions at which a check fails for the subject where it is clearest.
@@ -222,7 +228,8 @@ mod tests {
             hidden,
         ];
         let grade = Grade { items, diagnoses: vec![diagnosis("metal")], ..grade() };
-        let drawn = drawn(folder.path(), Some(&report(&["metal"])), &Feedback::of(&grade, ""));
+        let drawn =
+            drawn(&mut Desk::new(folder.path()), Some(&report(&["metal"])), &Feedback::of(&grade, ""));
         let ids: Vec<&str> = drawn.items.keys().map(String::as_str).collect();
         assert_eq!(ids, ["b", "c"], "a has the picture of c, and hidden items have none");
         assert!(drawn.items["b"].title.starts_with(Kind::Plane.title()), "{}", drawn.items["b"].title);
@@ -237,7 +244,8 @@ mod tests {
         let of = |hints| {
             let item = ItemGrade { hints, ..with("a", 1.0, "goodness-of-fit", &path) };
             let grade = Grade { items: vec![item], diagnoses: vec![diagnosis("metal")], ..grade() };
-            let drawn = drawn(folder.path(), Some(&report(&["metal"])), &Feedback::of(&grade, ""));
+            let drawn =
+                drawn(&mut Desk::new(folder.path()), Some(&report(&["metal"])), &Feedback::of(&grade, ""));
             (drawn.items.len(), drawn.causes.len())
         };
         assert_eq!([Hints::None, Hints::Region, Hints::Cause].map(of), [(0, 0), (1, 0), (1, 1)]);
@@ -248,7 +256,11 @@ mod tests {
         let of = |theta| {
             let item = ItemGrade { lost: vec![lost("metal", "normalization", theta)], ..item("a", 2.0) };
             let grade = Grade { items: vec![item], diagnoses: vec![diagnosis("metal")], ..grade() };
-            let drawn = drawn(Path::new("nowhere"), Some(&report(&["metal"])), &Feedback::of(&grade, ""));
+            let drawn = drawn(
+                &mut Desk::new(Path::new("nowhere")),
+                Some(&report(&["metal"])),
+                &Feedback::of(&grade, ""),
+            );
             drawn.causes.len()
         };
         assert_eq!((of(60.0), of(30.0)), (1, 0), "the counts of the example are of 60°");
@@ -261,7 +273,8 @@ mod tests {
             [("evidence/case-0001.json.gz", "failed to read evidence/"), ("../x.json.gz", "lies in")]
         {
             let grade = Grade { items: vec![with("a", 1.0, "mis", path)], ..grade() };
-            let drawn = drawn(folder.path(), Some(&report(&["metal"])), &Feedback::of(&grade, ""));
+            let drawn =
+                drawn(&mut Desk::new(folder.path()), Some(&report(&["metal"])), &Feedback::of(&grade, ""));
             assert!(drawn.items.is_empty());
             let told = drawn.unread.unwrap();
             assert!(told.contains(why) && !told.contains(&folder.path().display().to_string()), "{told}");

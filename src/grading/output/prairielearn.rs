@@ -151,7 +151,7 @@ fn cut(text: &str, room: Room) -> String {
 mod tests {
     use super::super::super::{Hints, ItemGrade};
     use super::super::examples::{SEED, broken, evidence_in, grade, hostile, item, lost, report, whole};
-    use super::super::pictures::drawn;
+    use super::super::pictures::{Desk, drawn};
     use super::*;
     use serde_json::Value;
     use std::path::Path;
@@ -172,7 +172,10 @@ mod tests {
     }
 
     fn of(grade: &Grade, folder: &Path) -> Value {
-        with(grade, &drawn(folder, Some(&report(&["metal:alpha=0.1"])), &Feedback::of(grade, "")))
+        with(
+            grade,
+            &drawn(&mut Desk::new(folder), Some(&report(&["metal:alpha=0.1"])), &Feedback::of(grade, "")),
+        )
     }
 
     #[test]

@@ -187,7 +187,7 @@ pub fn one(grade: &Grade, again: &str, look: Look) -> String {
         let padding = " ".repeat(widest - points.chars().count());
         line(&mut text, &format!("{} {padding}{points}  {title}{hidden}", look.paint(colour, symbol)));
     }
-    for lost in &feedback.lost {
+    for (_, lost) in feedback.told() {
         block(&mut text, lost, &feedback, look);
     }
     line(&mut text, "");

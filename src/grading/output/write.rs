@@ -6,7 +6,7 @@ use super::fairness::Fairness;
 use super::feedback::Feedback;
 use super::files::{feedback_page, feedback_text, file_name};
 use super::gradebook::{GRADEBOOK, gradebook};
-use super::pictures::drawn;
+use super::pictures::{Desk, drawn};
 use super::{appeals, class_page, gradescope, markdown, page, prairielearn};
 use crate::report::{FileError, Report, write_whole};
 use std::path::{Path, PathBuf};
@@ -56,7 +56,8 @@ pub fn write_student(
     told: &Told,
 ) -> Result<(), FileError> {
     let feedback = Feedback::of(grade, told.again);
-    let drawn = drawn(told.measured, report, &feedback);
+    let mut desk = Desk::new(told.measured);
+    let drawn = drawn(&mut desk, report, &feedback);
     let text = page::page(&feedback, &drawn, &nonce(grade));
     write_whole(&folder.join(feedback_page(&grade.id)), text.as_bytes())?;
     write_whole(&folder.join(feedback_text(&grade.id)), markdown::markdown(&feedback).as_bytes())?;
@@ -68,7 +69,7 @@ pub fn write_student(
         };
         write_whole(&folder.join(name).join(&file), text.as_bytes())?;
     }
-    appeals::write(folder, grade, report, told)
+    appeals::write(folder, grade, report, told, &mut desk)
 }
 
 /// Names the page's own style for its policy: nobody who writes a part of the grade can
