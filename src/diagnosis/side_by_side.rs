@@ -93,3 +93,46 @@ fn lobe(name: &'static str, model: impl Bsdf + Clone + 'static, share: f64, flag
         flags: Some(flags),
     }
 }
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use crate::diagnosis::textbook::Textbook;
+
+    fn given(numbers: &[(&str, f64)]) -> Parameters {
+        Parameters(numbers.iter().map(|(name, v)| (name.to_string(), Value::Number(*v))).collect())
+    }
+
+    #[test]
+    fn lobes_add_up_to_the_whole() {
+        let registry = Registry::builtin();
+        let declared = given(&[("alpha", 0.3), ("eta", 1.7), ("ks", 0.4), ("reflectance", 0.8)]);
+        let books = candidates(&registry, &declared);
+        // Two distributions, two maskings, two ways to draw; a dielectric, as η is declared.
+        assert_eq!(books.len(), 8);
+        for p in books {
+            assert!(p.text("second").contains("fresnel=dielectric") && p.text("second").contains("eta=1.7"));
+            let book = Textbook::new(NAME, &p).unwrap();
+            assert_eq!(book.lobes.len(), 2);
+            for (to, ti) in [(0.3, 0.5), (1.2, 0.9)] {
+                let (wo, wi) = (Direction::from_angles(to, 0.2), Direction::from_angles(ti, 2.9));
+                let pdf: f64 = book.lobes.iter().map(|l| (l.share)(wo) * (l.density)(wo, wi)).sum();
+                let light = Transport::Radiance;
+                let value: f64 = book.lobes.iter().map(|l| (l.value)(wo, wi, light)[0]).sum();
+                assert!((pdf / book.pdf(wo, wi) - 1.0).abs() < 1e-12, "{p:?}: {pdf}");
+                assert!((value / book.eval(wo, wi, light)[0] - 1.0).abs() < 1e-12, "{p:?}: {value}");
+            }
+        }
+    }
+
+    #[test]
+    fn a_share_and_a_roughness_are_needed() {
+        let registry = Registry::builtin();
+        assert!(candidates(&registry, &given(&[("alpha", 0.3), ("eta", 1.5)])).is_empty());
+        assert!(candidates(&registry, &given(&[("ks", 0.3), ("eta", 1.5)])).is_empty());
+        assert!(candidates(&registry, &given(&[("ks", 1.5), ("alpha", 0.3)])).is_empty());
+        let schlick = candidates(&registry, &given(&[("weight", 0.3), ("alpha", 0.3), ("f0", 0.1)]));
+        assert!(schlick.iter().all(|p| p.text("second").contains("fresnel=schlick,f0=0.1")));
+        assert_eq!(schlick.len(), 8);
+    }
+}

@@ -1,0 +1,1 @@
+../../../../include/gonio_parameters.h
