@@ -17,6 +17,9 @@ use std::sync::Arc;
 use std::sync::atomic::{AtomicBool, Ordering};
 use std::time::Instant;
 
+/// Of a submission and an item.
+pub type Command = dyn Fn(&str, &str) -> String + Send + Sync;
+
 /// What is asked for besides the rubric.
 #[derive(Clone)]
 pub struct Wishes {
@@ -24,8 +27,8 @@ pub struct Wishes {
     pub explanations: Arc<Vec<Box<dyn Explanation>>>,
     /// Set to stop.
     pub stop: Arc<AtomicBool>,
-    /// What to type to have an item of a submission measured again.
-    pub command: Arc<dyn Fn(&str, &str) -> String + Send + Sync>,
+    /// What to type to have an item of a submission measured again: both by their ids.
+    pub command: Arc<Command>,
     /// Whether what is kept is measured again.
     pub again: bool,
 }
@@ -131,7 +134,8 @@ impl Grader {
         let state = State { submission: prepared.digest.clone(), terms: self.terms.clone() };
         let kept =
             Kept::read(folder).filter(|kept| !self.wishes.again && kept.state.submission == state.submission);
-        if let Some(kept) = kept.as_ref().filter(|kept| kept.state == state)
+        // Why something is broken may lie in the machine, where a compiler was missing.
+        if let Some(kept) = kept.as_ref().filter(|kept| kept.state == state && kept.grade.broken.is_none())
             && let Ok(grade) = self.rescored(submission, kept)
         {
             return finish(folder, state, grade, kept.report.clone(), Took::default());

@@ -23,7 +23,7 @@ impl Subject for Held {
         let has = if self.eval_only { Has { pdf: false, sample: false, ..own.has } } else { own.has };
         // Neither is what it says cannot fail.
         Description {
-            claims: self.claims.clone(),
+            claims: self.claims,
             precision: self.precision,
             by_construction: Vec::new(),
             has,

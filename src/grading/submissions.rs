@@ -106,7 +106,12 @@ fn plain(id: &str) -> String {
     let same: String = id.trim().chars().map(|c| if is_plain(c) { c } else { '_' }).collect();
     match same.trim_start_matches('.') {
         "" => "unnamed".into(),
-        rest => rest.chars().take(100).collect(),
+        // Names of files end at 255 bytes, and some have an ending.
+        rest => {
+            let end =
+                rest.char_indices().map(|(at, c)| at + c.len_utf8()).take_while(|end| *end <= 200).last();
+            rest[..end.unwrap_or(0)].into()
+        }
     }
 }
 
@@ -160,7 +165,7 @@ fn single_folder(archive: &zip::ZipArchive<io::BufReader<File>>) -> Option<PathB
 
 /// What systems put beside the files that were meant.
 fn is_clutter(path: &Path) -> bool {
-    path.starts_with("__MACOSX") || path.file_name().is_some_and(|n| n == ".DS_Store")
+    path.starts_with("__MACOSX") || path.file_name().is_some_and(|n| n == ".DS_Store" || n == "__pycache__")
 }
 
 /// What may still be unpacked.
@@ -180,6 +185,9 @@ impl Room {
             let entry = entry.map_err(unreadable)?;
             let kind = entry.file_type().map_err(unreadable)?;
             let (path, target) = (entry.path(), into.join(entry.file_name()));
+            if is_clutter(&path) {
+                continue;
+            }
             if kind.is_dir() {
                 self.copy(&path, &target, depth + 1)?;
             } else if kind.is_file() {

@@ -80,7 +80,7 @@ fn a_rubric_is_read_as_it_is_written() {
     let rubric = load(&path, true).unwrap();
     assert_eq!((rubric.title.as_str(), rubric.seed, rubric.hidden), ("Two models", 99, true));
     assert_eq!((rubric.false_alarm, rubric.precision), (1e-4, Precision::F32));
-    assert_eq!((rubric.limit, rubric.max()), (Duration::from_secs(40), 1.0));
+    assert_eq!((rubric.limit, rubric.max()), (Duration::from_secs(40), 2.0));
     assert_eq!(rubric.solution, Some(folder.path().join("solution")));
     assert_eq!(rubric.sandbox.processes, 9);
     assert_eq!(rubric.sandbox.disk, 64 << 20);
