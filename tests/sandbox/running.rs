@@ -192,7 +192,9 @@ fn a_program_that_is_not_there() {
 #[test]
 fn nothing_outlives_its_guard() {
     let desk = Desk::new(&[]);
-    let words = ["sh", "-c", "echo runs; sleep 100"].map(Into::into).to_vec();
+    // It makes no call that the guard would have to answer.
+    let code = "import time; print('runs', flush=True); time.sleep(100)";
+    let words = ["/usr/bin/python3", "-c", code].map(Into::into).to_vec();
     let mut command = desk.sandbox.command(&Program::Command(words), &desk.limits).unwrap();
     let pipes = command.stdin(Stdio::null()).stdout(Stdio::piped()).stderr(Stdio::piped());
     let mut guard = pipes.spawn().unwrap();

@@ -60,7 +60,7 @@ impl Log {
     pub fn note(&mut self, what: &str) {
         let mut what: String = one_line(what).chars().take(LENGTH + 1).collect();
         if what.chars().count() > LENGTH {
-            what.pop();
+            what = what.chars().take(LENGTH - 1).collect();
             what.push('…');
         }
         if self.seen.len() >= KINDS && !self.seen.contains_key(&what) {
