@@ -80,7 +80,7 @@ checks = ["energy"]
 "#;
 
 const HIDDEN: &str = "seed = 8231977\n[[item]]\nid = 'unseen'\ntitle = 'Unseen'\npoints = 5\nkind = 'bonus'\n\
-    credit = 'whole'\nsubject = 'paint:reflectance=0.123'\nchecks = ['goodness-of-fit', 'returned-pdf']\nphi = 137\n";
+    credit = 'whole'\nsubject = 'paint:reflectance=0.123'\nchecks = ['goodness-of-fit', 'returned-pdf']\nphi = 137.7625\n";
 
 /// gonio's own template, which is right.
 fn right() -> String {
@@ -115,7 +115,7 @@ fn class() -> Desk {
         ("cy", "native.c", with(VALUE, "1.3 * self->reflectance / PI : 0.0")),
         ("dan", "paint.c", "int main( {".into()),
         ("eve", "native.c", with(PDF, "cosine > 0.0 ? cosine / PI : *(volatile double *)8")),
-        ("fay", "paint.c", with("f[k] = wo[2]", "while (n) {}\n        f[k] = wo[2]")),
+        ("fay", "paint.c", with("  f[k] = wo[2]", "  while (n) {}\n        f[k] = wo[2]")),
     ] {
         hand_in(&desk, id, file, &text);
     }
@@ -202,7 +202,7 @@ fn students_learn_nothing_of_what_is_hidden() {
     for folder in ["feedback", "gradescope", "prairielearn"] {
         for (name, bytes) in desk.files(&format!("grades/{folder}")) {
             let text = String::from_utf8(bytes).unwrap();
-            for secret in ["8231977", "0.123", "137"] {
+            for secret in ["8231977", "0.123", "137.7625"] {
                 assert!(!text.contains(secret), "{secret} in {folder}/{name}");
             }
             assert!(text.contains("Unseen"), "{folder}/{name}");
@@ -317,7 +317,7 @@ fn an_item_is_measured_again_for_an_appeal() {
     assert!(!again.err.contains("weight"), "{}", again.err);
     assert!(!desk.path("grades").exists(), "nothing is written");
     run(&desk, "--item pdf").ends(2).says("--only ID");
-    run(&desk, "--only ben --item pfd").ends(2).says("did you mean `pdf`?");
+    run(&desk, "--only ben --item pdff").ends(2).says("did you mean `pdf`?");
     run(&desk, "--only bn").ends(2).says("did you mean `ben`?");
 }
 

@@ -17,19 +17,13 @@ type Opened = Result<Arc<Plugin>, String>;
 #[derive(Default)]
 pub struct Plugins {
     limits: Limits,
-    sandbox: Option<Arc<Sandbox>>,
     opened: Mutex<HashMap<String, Opened>>,
 }
 
 impl Plugins {
     /// None yet; they will have these limits.
     pub fn new(limits: Limits) -> Self {
-        Self { limits, ..Self::default() }
-    }
-
-    /// None yet; those that are processes will run in this sandbox.
-    pub fn within(limits: Limits, sandbox: Sandbox) -> Self {
-        Self { limits, sandbox: Some(Arc::new(sandbox)), ..Self::default() }
+        Self { limits, opened: Mutex::default() }
     }
 
     /// What plugins may take.
@@ -48,24 +42,14 @@ impl Plugins {
             }
             _ => (name, None),
         };
-        Some(self.model_of(name, file, &Named::of(file)?, wanted))
-    }
-
-    /// The model `wanted`, or the only one, of a plugin that is called `file`; the model
-    /// is called `name`.
-    pub fn model_of(
-        &self,
-        name: &str,
-        file: &str,
-        named: &Named,
-        wanted: Option<&str>,
-    ) -> Result<Model, String> {
-        let plugin = match self.opened(file, named) {
+        let plugin = match self.opened(file, &Named::of(file)?) {
             Ok(plugin) => plugin,
-            Err(why) => return Ok(broken(name, why)),
+            Err(why) => return Some(Ok(broken(name, why))),
         };
-        let description = plugin.hello.model(file, wanted).map_err(|why| format!("`{file}` {why}"))?.clone();
-        Ok(model_of(&plugin, &description, name, true))
+        Some(match plugin.hello.model(file, wanted) {
+            Ok(description) => Ok(model_of(&plugin, description, name, true)),
+            Err(why) => Err(format!("`{file}` {why}")),
+        })
     }
 
     /// The models of the plugin `file` and what they are, where it has several.
@@ -80,9 +64,8 @@ impl Plugins {
     }
 
     fn open(&self, file: &str, named: &Named) -> Opened {
-        let opened = named
-            .route(&self.limits, self.sandbox.as_ref())
-            .and_then(|route| Plugin::open(file, route, &self.limits));
+        let opened =
+            named.route(&self.limits, None).and_then(|route| Plugin::open(file, route, &self.limits));
         opened.map(Arc::new).map_err(|fault| fault.to_string())
     }
 }

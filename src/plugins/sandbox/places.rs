@@ -1,7 +1,9 @@
 //! Which paths a program has business with: this decides what is told of, not what it gets.
 
 use super::incident::Phase;
+use super::mounts::GONIO;
 use super::rules::Rules;
+use std::ffi::OsStr;
 use std::path::{Component, Path, PathBuf};
 
 /// What every sandbox shows.
@@ -84,6 +86,12 @@ pub fn absolute(folder: &Path, path: &Path) -> PathBuf {
 pub fn may_read(path: &Path, rules: &Rules, own: Option<u32>) -> bool {
     let more = || rules.open.iter().chain([&rules.work]).map(Path::new);
     let shown = || SHOWN.iter().map(Path::new).chain(more());
+    // Code that panics is looked up there, and beside it.
+    let is_gonio =
+        path.parent() == Path::new(GONIO).parent() && path.file_stem() == Some(OsStr::new("gonio"));
+    if is_gonio || rules.named.iter().any(|folder| path.starts_with(folder)) {
+        return true;
+    }
     // What is above it is on the way there.
     if shown().any(|place| path.starts_with(place) || place.starts_with(path)) {
         return true;
@@ -138,6 +146,7 @@ mod tests {
             disk: 0,
             work: "/work".into(),
             open: vec!["/home/t/venv".into()],
+            named: vec!["/home/u/package".into()],
         }
     }
 
@@ -167,6 +176,9 @@ mod tests {
             "/lib/x",
             "/etc",
             "/home/lib/python311.zip",
+            "/home/u/package/brdf",
+            "/run/gonio",
+            "/run/gonio.dwp",
         ] {
             assert!(may(path), "{path}");
         }
@@ -181,6 +193,8 @@ mod tests {
             "/source/x",
             "/etc/x/y-release",
             "/home/lib/secret",
+            "/home/u/other",
+            "/run/other",
             "/var/lib/python311.zip",
         ] {
             assert!(!may(path), "{path}");

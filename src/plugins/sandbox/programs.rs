@@ -46,6 +46,18 @@ fn programs_of(folder: &Path) -> Vec<PathBuf> {
     all
 }
 
+/// The folders that the packages of a Python in `prefix` name, as those do that are installed
+/// to be edited: each is a line of a file `.pth`.
+pub fn named_by(prefix: &Path) -> Vec<String> {
+    let files = |folder: &Path| std::fs::read_dir(folder).into_iter().flatten().flatten().map(|e| e.path());
+    let packages = files(&prefix.join("lib")).map(|python| python.join("site-packages"));
+    let lists = packages.flat_map(|packages| files(&packages).collect::<Vec<_>>());
+    let lists = lists.filter(|file| file.extension().is_some_and(|e| e == "pth"));
+    let texts: Vec<String> = lists.filter_map(|file| std::fs::read_to_string(file).ok()).collect();
+    let lines = texts.iter().flat_map(|text| text.lines()).map(str::trim);
+    lines.filter(|line| Path::new(line).is_absolute()).map(String::from).collect()
+}
+
 /// Finds the program of a command: in the sandbox's own folder where it has a path from
 /// there, else where this machine has it.
 pub fn find(words: &[OsString], readable: &[PathBuf]) -> Result<Found, String> {

@@ -27,4 +27,6 @@ pub struct Rules {
     pub work: String,
     /// Folders that it may read beside those that every sandbox has.
     pub open: Vec<String>,
+    /// Folders that packages of those name, and that it looks for without being shown them.
+    pub named: Vec<String>,
 }

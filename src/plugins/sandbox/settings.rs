@@ -128,6 +128,7 @@ impl Sandbox {
             disk: self.allowance.disk,
             work: mounts::work(&open).into(),
             open: open.iter().map(|path| path.to_string_lossy().into_owned()).collect(),
+            named: open.iter().flat_map(|folder| programs::named_by(folder)).collect(),
         };
         let rules = serde_json::to_string(&rules).map_err(|e| e.to_string())?;
         let mut command = Command::new(&gonio);
