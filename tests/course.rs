@@ -127,6 +127,30 @@ fn the_class_of_the_course_is_graded_as_its_labels_say() {
     assert!(wrong.is_empty(), "{wrong:#?}\n{table}");
     assert_eq!(kept, Some(table.as_str()), "examples/course/README.md has another table; this one:\n{table}");
 
+    // What a student is shown as predicted goes through what was counted.
+    let report = desk.report("grades/submissions/cpp-no-jacobian");
+    let diagnoses = report["diagnoses"].as_array().unwrap().iter();
+    let metal = diagnoses.filter(|d| d["subject"].as_str().unwrap().starts_with("metal")).collect::<Vec<_>>();
+    assert!(metal.len() >= 3);
+    for diagnosis in metal {
+        let number = |value: &serde_json::Value| value.as_f64().unwrap();
+        let predicted = diagnosis["profile"]["predicted"].as_array().unwrap();
+        let mut compared = 0;
+        for bin in diagnosis["profile"]["bins"].as_array().unwrap() {
+            let [theta, observed, expected] =
+                ["theta_deg", "observed", "expected"].map(|key| number(&bin[key]));
+            let off = |pair: &&serde_json::Value| (number(&pair[0]) - theta).abs();
+            let nearest = predicted.iter().min_by(|a, b| off(a).total_cmp(&off(b))).unwrap();
+            // Bins are wider than the step of the curve; of a wrong density it is off by 2.
+            if observed > 200.0 {
+                let ratio = observed / expected / number(&nearest[1]);
+                assert!((ratio.ln()).abs() < 0.25, "{}: {theta} {ratio}", diagnosis["subject"]);
+                compared += 1;
+            }
+        }
+        assert!(compared >= 5, "{}", diagnosis["subject"]);
+    }
+
     // Cheats gain nothing over the same without the cheat, and are told of.
     let honest = grades["python-no-jacobian"].score;
     for (id, told) in [

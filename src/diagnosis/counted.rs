@@ -36,7 +36,8 @@ pub fn tell(view: &View, books: &[Textbook], claim: &mut Claim) -> Option<Profil
     let case = &counts[worst].0;
     // Of a sampler's mistake the textbook's density predicts nothing.
     let of_pdf = claim.statement.contains("pdf(") && !claim.statement.contains("sample()");
-    let book = books.iter().find(|b| of_pdf && !b.agrees.by_pdf());
+    // Of two the second is the one that draws as the subject does.
+    let book = books.iter().rev().find(|b| of_pdf && !b.agrees.by_pdf());
     Profile::of(view, &view.cases[*case], book)
 }
 
