@@ -195,6 +195,23 @@ fn a_class_is_graded_whatever_its_members_hand_in() {
 }
 
 #[test]
+fn one_that_takes_too_long_loses_what_was_not_reached_and_stops_nobody() {
+    let desk = class();
+    desk.write("rubric.toml", &RUBRIC.replace("call_limit = 1", "call_limit = 1\nlimit = 2"));
+    let slow =
+        with("  pdf[k] = wo[2]", "  { volatile int i; for (i = 0; i < 40000; ++i) {} }\n  pdf[k] = wo[2]");
+    hand_in(&desk, "liz", "native.c", &slow);
+    run(&desk, "--workers 2 --only liz --only ada --only ben").ends(0);
+    assert_eq!((grade(&desk, "ada").score, grade(&desk, "ben").score), (15.0, 4.0));
+    let liz = grade(&desk, "liz");
+    assert!(liz.review.iter().any(|what| what.contains("time was up")), "{:?}", liz.review);
+    let unreached = liz.items.iter().flat_map(|item| &item.lost);
+    assert!(unreached.clone().count() > 0);
+    assert!(unreached.clone().all(|l| l.verdict != gonio::checks::Verdict::Fail), "{:?}", liz.items);
+    assert!(liz.score < 15.0 && liz.score >= 1.0);
+}
+
+#[test]
 fn students_learn_nothing_of_what_is_hidden() {
     let desk = class();
     run(&desk, "--to gradescope,prairielearn --only ben --only ada").ends(0);
@@ -285,6 +302,8 @@ fn a_student_sees_the_same_by_the_public_part() {
     let desk = class();
     std::fs::remove_file(desk.path("hidden.toml")).unwrap();
     std::fs::remove_dir_all(desk.path("solution")).unwrap();
+    // Its folder is called as it likes.
+    desk.write("rubric.toml", &format!("{RUBRIC}\n[submissions]\npattern = 'submission-(?<n>\\d+)'\n"));
     let own =
         |id: &str| done(&mut desk.command(GONIO, &format!("grade --self rubric.toml class/{id} --out own")));
     own("ada").ends(0);
@@ -302,7 +321,9 @@ fn a_student_sees_the_same_by_the_public_part() {
         thresholds.iter().map(of).find(|(check, _)| check.contains("goodness")).unwrap()
     };
     let own = share("own/submissions/ada");
-    desk.write("hidden.toml", HIDDEN);
+    run(&desk, "").ends(2).says("hidden.toml cannot be read");
+    desk.write("hidden.toml", HIDDEN).write("rubric.toml", RUBRIC);
+    run(&desk, "").ends(2).says("the solution: it cannot be read");
     std::fs::create_dir(desk.path("solution")).unwrap();
     desk.write("solution/paint.c", &right());
     run(&desk, "--only ada").ends(0);

@@ -59,7 +59,7 @@ pub struct GradeArgs {
 /// Grades what is asked for.
 pub fn grade(args: &GradeArgs, registry: &Registry, voice: Voice) -> Result<Exit, CliError> {
     let rubric = load(&args.rubric, !args.own)?;
-    let found = find(&args.submissions, &rubric).map_err(|message| CliError::Usage {
+    let found = find(&args.submissions, &rubric, args.own).map_err(|message| CliError::Usage {
         message,
         help: "name submissions (a folder or zip each), or folders of them".into(),
     })?;
@@ -81,6 +81,7 @@ pub fn grade(args: &GradeArgs, registry: &Registry, voice: Voice) -> Result<Exit
         stop: stop.clone(),
         command: Arc::new(command.clone()),
         again: args.again,
+        own: args.own,
     };
     let grader = Grader::new(rubric, registry.clone(), wishes).map_err(failed)?;
     if let Some(item) = &args.item {

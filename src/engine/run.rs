@@ -66,7 +66,8 @@ pub fn run(plan: &Plan<'static>, options: &Options, observe: &mut dyn FnMut(&Eve
     let shared = Arc::new(Shared {
         cases: plan.cases.clone(),
         queue: Mutex::new(allotment.order(plan, &chosen).into()),
-        stop: options.stop.clone(),
+        // Its own: that time is up for this run stops no other.
+        stop: Arc::new(AtomicBool::new(false)),
         seed: plan.seed,
         share,
         allotment,
@@ -81,7 +82,7 @@ pub fn run(plan: &Plan<'static>, options: &Options, observe: &mut dyn FnMut(&Eve
     let mut done: Vec<Option<CaseResult<'static>>> = plan.cases.iter().map(|_| None).collect();
     let mut open = chosen.len();
     while open > 0 {
-        if options.deadline.is_some_and(|d| start.elapsed() > d) {
+        if options.stop.load(Ordering::Relaxed) || options.deadline.is_some_and(|d| start.elapsed() > d) {
             shared.stop.store(true, Ordering::Relaxed);
         }
         let finished = match receiver.recv_timeout(TICK) {

@@ -31,6 +31,8 @@ pub struct Wishes {
     pub command: Arc<Command>,
     /// Whether what is kept is measured again.
     pub again: bool,
+    /// Whether a student grades, who may lack the solution.
+    pub own: bool,
 }
 
 /// Grades submissions, each by the same terms.
@@ -89,7 +91,7 @@ impl Grader {
     pub fn new(mut rubric: Rubric, registry: Registry, wishes: Wishes) -> Result<Self, Failure> {
         let mut measurement = Measurement::of(&rubric);
         let path = rubric.solution.clone();
-        let solution = match path.filter(|path| path.exists() || rubric.hidden) {
+        let solution = match path.filter(|path| path.exists() || !wishes.own) {
             Some(path) => {
                 let submission = Submission { id: SOLUTION.into(), names: Default::default(), path };
                 let wrong = |b: Broken| {

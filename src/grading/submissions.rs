@@ -31,16 +31,17 @@ pub struct Submissions {
     pub passed_over: Vec<String>,
 }
 
-/// Finds submissions: each of `paths` is one, or a folder of them.
+/// Finds submissions: each of `paths` is one, or a folder of them. A student's `own` may be
+/// called as it likes.
 ///
 /// # Errors
 /// In a sentence: a path that cannot be read, two of one id, none at all.
-pub fn find(paths: &[PathBuf], rubric: &Rubric) -> Result<Submissions, String> {
+pub fn find(paths: &[PathBuf], rubric: &Rubric, own: bool) -> Result<Submissions, String> {
     let mut found = Submissions::default();
     for path in paths {
         let unreadable = |e: io::Error| format!("{} cannot be read: {e}", path.display());
         if is_zip(path) || path.is_dir() && is_submission(path, rubric) {
-            found.add(path, rubric);
+            found.add(path, rubric, own);
             continue;
         }
         let mut entries: Vec<PathBuf> =
@@ -49,7 +50,7 @@ pub fn find(paths: &[PathBuf], rubric: &Rubric) -> Result<Submissions, String> {
         for entry in entries {
             let hidden = entry.file_name().is_some_and(|n| n.to_string_lossy().starts_with('.'));
             if !hidden && (is_zip(&entry) || entry.is_dir() && !entry.is_symlink()) {
-                found.add(&entry, rubric);
+                found.add(&entry, rubric, own);
             } else if !hidden {
                 found.passed_over.push(format!("{} is neither a folder nor a zip", entry.display()));
             }
@@ -81,11 +82,15 @@ fn is_submission(folder: &Path, rubric: &Rubric) -> bool {
 }
 
 impl Submissions {
-    fn add(&mut self, path: &Path, rubric: &Rubric) {
+    fn add(&mut self, path: &Path, rubric: &Rubric, own: bool) {
         // `.` has a name of its own.
         let real = path.canonicalize().unwrap_or_else(|_| path.into());
         let name = if is_zip(path) { real.file_stem() } else { real.file_name() };
         let name = name.unwrap_or_default().to_string_lossy().into_owned();
+        if own {
+            let id = plain(&name);
+            return self.all.push(Submission { id, names: BTreeMap::new(), path: path.into() });
+        }
         let Some(captures) = rubric.pattern.captures(&name) else {
             let pattern = rubric.pattern.as_str().trim_start_matches("^(?:").trim_end_matches(")$");
             self.passed_over.push(format!("{} does not fit the pattern `{pattern}`", path.display()));
@@ -163,9 +168,10 @@ fn single_folder(archive: &zip::ZipArchive<io::BufReader<File>>) -> Option<PathB
     files.iter().all(|path| path.starts_with(&first) && *path != first).then_some(first)
 }
 
-/// What systems put beside the files that were meant.
+/// What systems and tools put beside the files that were meant.
 fn is_clutter(path: &Path) -> bool {
-    path.starts_with("__MACOSX") || path.file_name().is_some_and(|n| n == ".DS_Store" || n == "__pycache__")
+    let name = path.file_name().unwrap_or_default().to_string_lossy();
+    path.starts_with("__MACOSX") || name.starts_with('.') || name == "__pycache__"
 }
 
 /// What may still be unpacked.
