@@ -128,7 +128,7 @@ fn mistakes_are_told_with_what_to_type() {
         ("\"paint\"]", "\"paint:alpha\"]", "not KEY=VALUE"),
         ("\"paint\"]", "\"paint:alpha=0.1\"]", "twice"),
         ("hints = \"full\"", "hints = \"all\"", "value of `hints`"),
-        ("library = \"brdf.so\"", "library = \"../brdf.so\"", "leads elsewhere"),
+        ("library = \"brdf.so\"", "library = \"../brdf.so\"", "in its own folder"),
         ("library = \"brdf.so\"\n", "", "in one way what is measured"),
         ("when = \"brdf.c\"\n", "", "without `when`"),
         ("given.h", "taken.h", "does not exist"),
