@@ -73,13 +73,11 @@ fn confusion(labels: &[Label], grades: &BTreeMap<String, Grade>) -> String {
     text
 }
 
-/// What a submission could have left behind: temporary folders, and processes that run from
-/// one or in a sandbox.
-fn traces() -> BTreeSet<String> {
-    let ours = |name: &str| name.starts_with("gonio-grade-");
-    let entries = std::fs::read_dir(std::env::temp_dir()).unwrap().flatten();
-    let mut found: BTreeSet<String> =
-        entries.map(|e| e.file_name().to_string_lossy().into_owned()).filter(|n| ours(n)).collect();
+/// What a submission could have left behind: temporary files, and processes of the harness
+/// or of a sandbox.
+fn traces(temporary: &Path) -> BTreeSet<String> {
+    let entries = std::fs::read_dir(temporary).unwrap().flatten();
+    let mut found: BTreeSet<String> = entries.map(|e| e.file_name().to_string_lossy().into_owned()).collect();
     for process in std::fs::read_dir("/proc").unwrap().flatten() {
         let command = std::fs::read(process.path().join("cmdline")).unwrap_or_default();
         let command = String::from_utf8_lossy(&command).replace('\0', " ");
@@ -96,10 +94,12 @@ fn the_class_of_the_course_is_graded_as_its_labels_say() {
     let python = &tools().python;
     let desk = Desk::new();
     let course = course(&desk);
-    let (before, files) = (traces(), desk.files("course"));
+    let temporary = desk.path("tmp");
+    std::fs::create_dir(&temporary).unwrap();
+    let (before, files) = (traces(&temporary), desk.files("course"));
     let path = format!("{}:{}", python.display(), std::env::var("PATH").unwrap());
     let mut grade = desk.command(GONIO, "grade course/rubric.toml class -v");
-    let graded = done(grade.env("PATH", path).timeout(Duration::from_secs(1500)));
+    let graded = done(grade.env("PATH", path).env("TMPDIR", &temporary).timeout(Duration::from_secs(1500)));
     graded.ends(0);
     let labels = labels(&course);
     let read = |id: &str| -> Grade {
@@ -175,14 +175,14 @@ fn the_class_of_the_course_is_graded_as_its_labels_say() {
     }
 
     // The machine is as it was: the course too, into which some have tried to write.
-    let left: Vec<_> = traces().difference(&before).cloned().collect();
+    let left: Vec<_> = traces(&temporary).difference(&before).cloned().collect();
     assert!(left.is_empty(), "{left:?}");
     assert_eq!(desk.files("course"), files);
     let beside: BTreeSet<String> = std::fs::read_dir(desk.path(""))
         .unwrap()
         .map(|e| e.unwrap().file_name().into_string().unwrap())
         .collect();
-    assert_eq!(beside, ["class", "course", "grades"].map(String::from).into());
+    assert_eq!(beside, ["class", "course", "grades", "tmp"].map(String::from).into());
     let written = ["results.json", "grade.json"].map(|name| Path::new("/autograder/results").join(name));
     assert!(written.iter().all(|path| !path.exists()));
 }
