@@ -28,7 +28,7 @@ pub use reproduce::reproduce;
 
 /// Typed reading of TOML with its places, for the other files that people write.
 pub(crate) mod toml_reader {
-    pub(crate) use super::file::check_id;
+    pub(crate) use super::file::{check_id, set};
     pub(crate) use super::promises::claims;
     pub(crate) use super::reader::{Node, Reader, entries};
 }

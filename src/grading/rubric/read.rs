@@ -1,13 +1,13 @@
 //! A rubric from its files, with every mistake of each at once.
 
-use super::read_item::{Terms, read_item};
+use super::read_item::{Terms, read_item, seconds};
 use super::terms::{Item, Language, Route, Rubric, SandboxTerms};
 use crate::bsdf::Precision;
 use crate::grading::ItemKind;
 use crate::grading::output::{Export, Template, placeholders};
 use crate::plugins::Limits;
-use crate::suite::toml_reader::{Node, Reader, claims, entries};
-use crate::suite::{FALSE_ALARM, Mistake, SEED, SuiteError, fraction, mebibytes, time_limit};
+use crate::suite::toml_reader::{Node, Reader, claims, entries, set};
+use crate::suite::{FALSE_ALARM, Mistake, SEED, SuiteError, fraction, mebibytes};
 use regex::Regex;
 use std::collections::{BTreeMap, BTreeSet};
 use std::ops::Range;
@@ -487,10 +487,6 @@ fn text(reader: &mut Reader, key: &str, value: &Node) -> Option<String> {
     reader.text(key, value).map(Spanned::into_inner)
 }
 
-fn seconds(reader: &mut Reader, key: &str, value: &Node) -> Option<Duration> {
-    reader.number(key, value, time_limit).map(Duration::from_secs_f64)
-}
-
 fn whole(n: f64) -> Result<f64, String> {
     if n >= 1.0 && n.fract() == 0.0 && n <= 1e6 {
         Ok(n)
@@ -504,11 +500,5 @@ fn home(path: &str) -> PathBuf {
     match (path.strip_prefix("~/"), std::env::var_os("HOME")) {
         (Some(rest), Some(home)) => Path::new(&home).join(rest),
         _ => path.into(),
-    }
-}
-
-fn set<T>(place: &mut T, value: Option<T>) {
-    if let Some(value) = value {
-        *place = value;
     }
 }

@@ -6,7 +6,7 @@ use crate::checks;
 use crate::grading::{Hints, ItemKind};
 use crate::plugins::Limits;
 use crate::registry::{Spelling, nearest};
-use crate::suite::toml_reader::{Node, Reader, check_id, claims, entries};
+use crate::suite::toml_reader::{Node, Reader, check_id, claims, entries, set};
 use crate::suite::{Mistake, Settings, azimuth, fraction, mebibytes, polar, positive, time_limit};
 use std::time::Duration;
 use toml::Spanned;
@@ -238,12 +238,7 @@ fn read_id(reader: &mut Reader, value: &Node, before: &[Item]) -> Option<String>
     Some(id.into_inner())
 }
 
-fn seconds(reader: &mut Reader, key: &str, value: &Node) -> Option<Duration> {
+/// A time in seconds.
+pub fn seconds(reader: &mut Reader, key: &str, value: &Node) -> Option<Duration> {
     reader.number(key, value, time_limit).map(Duration::from_secs_f64)
-}
-
-fn set<T>(place: &mut T, value: Option<T>) {
-    if let Some(value) = value {
-        *place = value;
-    }
 }
