@@ -208,7 +208,11 @@ fn one_that_takes_too_long_loses_what_was_not_reached_and_stops_nobody() {
     let unreached = liz.items.iter().flat_map(|item| &item.lost);
     assert!(unreached.clone().count() > 0);
     assert!(unreached.clone().all(|l| l.verdict != gonio::checks::Verdict::Fail), "{:?}", liz.items);
-    assert!(liz.score < 15.0 && liz.score >= 1.0);
+    // How far it came depends on the machine; what it reached, it has.
+    assert!(liz.score < 15.0, "{}", liz.score);
+    for item in liz.items.iter().filter(|item| item.lost.is_empty() && item.unmet.is_none()) {
+        assert_eq!(item.earned, if item.id == "bright" { 0.0 } else { item.points }, "{item:?}");
+    }
 }
 
 #[test]

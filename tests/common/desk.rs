@@ -95,7 +95,8 @@ impl Desk {
         serde_json::from_str(&text).unwrap()
     }
 
-    /// The files below a folder, by their path from there.
+    /// The files below a folder, by their path from there. What a running
+    /// program removes or renames meanwhile is not among them.
     pub fn files(&self, folder: &str) -> BTreeMap<String, Vec<u8>> {
         let mut found = BTreeMap::new();
         let Ok(entries) = std::fs::read_dir(self.path(folder)) else { return found };
@@ -106,7 +107,11 @@ impl Desk {
                 let below = self.files(&format!("{folder}/{name}"));
                 found.extend(below.into_iter().map(|(k, v)| (format!("{name}/{k}"), v)));
             } else {
-                found.insert(name, std::fs::read(entry.path()).unwrap());
+                match std::fs::read(entry.path()) {
+                    Ok(bytes) => _ = found.insert(name, bytes),
+                    Err(gone) if gone.kind() == std::io::ErrorKind::NotFound => {}
+                    Err(wrong) => panic!("{}: {wrong}", entry.path().display()),
+                }
             }
         }
         found
