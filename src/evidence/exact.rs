@@ -73,6 +73,10 @@ fn hostile_u(dimensions: usize, precision: Precision) -> Vec<f64> {
     u
 }
 
+/// Rows of the calls that repeat samples, over and over: alone, and in numbers that no
+/// width of vector divides.
+const BATCHES: [usize; 8] = [1, 1, 2, 3, 5, 7, 11, 13];
+
 /// Equal calls give equal numbers, whatever was called between them and whatever
 /// rows stand beside them. Code that works on several rows at once may round the last
 /// of a batch otherwise than the first.
@@ -137,34 +141,40 @@ impl Repeats {
             });
         }
         if samples {
-            for k in (0..ROWS).rev() {
-                let row = &u[k * d..(k + 1) * d];
-                meter.sample(setup.wo, row, setup.transport, &mut again)?;
-                found.sample.look(difference(&first, k, &again), || {
-                    Place::pair(setup.wo, first.wi[k])
-                        .drawn_by(row)
-                        .value("sample.pdf", first.pdf[k])
-                        .value("again", again.pdf[0])
-                });
+            let mut sizes = BATCHES.iter().cycle();
+            let mut end = ROWS;
+            while let Some(size) = sizes.next().filter(|_| end > 0) {
+                let rows = end.saturating_sub(*size)..end;
+                meter.sample(setup.wo, &u[rows.start * d..end * d], setup.transport, &mut again)?;
+                end = rows.start;
+                for (row, k) in rows.enumerate() {
+                    found.sample.look(difference(&first, k, &again, row), || {
+                        Place::pair(setup.wo, first.wi[k])
+                            .drawn_by(&u[k * d..(k + 1) * d])
+                            .value("sample.pdf", first.pdf[k])
+                            .value("again", again.pdf[row])
+                    });
+                }
             }
         }
         Ok(found)
     }
 }
 
-/// How far row `k` of `first` is from the only row of `again`.
-fn difference(first: &Samples, k: usize, again: &Samples) -> f64 {
-    if first.lobe[k] != again.lobe[0] {
+/// How far row `k` of `first` is from row `row` of `again`.
+fn difference(first: &Samples, k: usize, again: &Samples, row: usize) -> f64 {
+    if first.lobe[k] != again.lobe[row] {
         return 1.0;
     }
     if !first.lobe[k].is_valid() {
         return 0.0;
     }
-    let weights = first.weight_of(k).iter().zip(again.weight_of(0)).map(|(a, b)| relative_error(*a, *b, 0.0));
-    let apart = (first.wi[k] - again.wi[0]).length();
+    let weights =
+        first.weight_of(k).iter().zip(again.weight_of(row)).map(|(a, b)| relative_error(*a, *b, 0.0));
+    let apart = (first.wi[k] - again.wi[row]).length();
     // A number that is none counts as different, unless both are.
     let worst = |most: f64, x: f64| if x <= most { most } else { x };
-    weights.fold(worst(apart, relative_error(first.pdf[k], again.pdf[0], 0.0)), worst)
+    weights.fold(worst(apart, relative_error(first.pdf[k], again.pdf[row], 0.0)), worst)
 }
 
 /// Turning wo and wi together about the normal changes neither eval nor pdf.

@@ -162,73 +162,106 @@ fn slopes(meter: &Meter, setup: &Setup) -> Result<Vec<Point>, Halt> {
     Ok(points)
 }
 
-/// Whether wi jumps anywhere on lines through the unit square. Looked for in even
-/// steps, and in ones that halve towards both ends, where a rare lobe may have its
-/// share.
+/// Whether wi jumps anywhere on lines through the unit square: to another kind of
+/// lobe, or by a step that does not shrink when it is halved again and again. Looked
+/// for in even steps, and in ones that halve towards both ends, where a rare lobe may
+/// have its share. All lines are walked side by side, in few calls of many rows.
 fn has_jump(meter: &Meter, setup: &Setup, active: [usize; 2]) -> Result<bool, Halt> {
+    let d = meter.dimensions();
     let mut stream = setup.key.with("stage", "jumps").block(0);
     let even: Vec<f64> = (0..LINE_POINTS).map(|k| (k as f64 + 0.5) / LINE_POINTS as f64).collect();
     let low: Vec<f64> = (RIM..RIM_END).rev().map(|k| (-f64::from(k)).exp2()).collect();
     let high: Vec<f64> = (RIM..RIM_END).map(|k| 1.0 - (-f64::from(k)).exp2()).collect();
+    let mut scans = Vec::new();
     for axis in active {
         for _ in 0..LINES {
-            let line: Vec<f64> = (0..meter.dimensions()).map(|_| 0.01 + 0.98 * stream.next_f64()).collect();
-            for places in [&even, &low, &high] {
-                if jumps_between(meter, setup, &line, axis, places)? {
-                    return Ok(true);
-                }
-            }
+            let line: Vec<f64> = (0..d).map(|_| 0.01 + 0.98 * stream.next_f64()).collect();
+            scans.extend([&even, &low, &high].map(|places| (Line { u: line.clone(), axis }, places)));
         }
     }
-    Ok(false)
-}
-
-/// Whether wi jumps between `places` on the line along `axis`: to another kind of
-/// lobe, or by a step that does not shrink when it is halved again and again.
-fn jumps_between(
-    meter: &Meter,
-    setup: &Setup,
-    line: &[f64],
-    axis: usize,
-    places: &[f64],
-) -> Result<bool, Halt> {
     let mut samples = Samples::default();
-    let row = |s: f64| {
-        let mut row = line.to_vec();
-        row[axis] = s;
-        row
-    };
-    let u: Vec<f64> = places.iter().flat_map(|s| row(*s)).collect();
+    let u: Vec<f64> =
+        scans.iter().flat_map(|(line, places)| places.iter().flat_map(|s| line.row(*s))).collect();
     meter.sample(setup.wo, &u, setup.transport, &mut samples)?;
-    let mut lobes = samples.lobe.iter().filter(|l| l.is_valid());
-    if lobes.next().is_some_and(|first| lobes.any(|l| l != first)) {
-        return Ok(true);
+    let mut steps = Vec::new();
+    let mut first = 0;
+    for (line, places) in scans {
+        let mut lobes = samples.lobe[first..first + places.len()].iter().filter(|l| l.is_valid());
+        if lobes.next().is_some_and(|one| lobes.any(|l| l != one)) {
+            return Ok(true);
+        }
+        let widest = (1..places.len())
+            .filter(|k| [k - 1, *k].iter().all(|k| samples.lobe[first + k].is_valid()))
+            .map(|k| ((samples.wi[first + k] - samples.wi[first + k - 1]).length(), k))
+            .max_by(|a, b| a.0.total_cmp(&b.0));
+        first += places.len();
+        steps.extend(widest.map(|(width, k)| Step {
+            line,
+            ends: [places[k - 1], places[k]],
+            start: width,
+            width,
+        }));
     }
-    let widest = (1..places.len())
-        .filter(|k| samples.lobe[*k].is_valid() && samples.lobe[k - 1].is_valid())
-        .map(|k| ((samples.wi[k] - samples.wi[k - 1]).length(), k))
-        .max_by(|a, b| a.0.total_cmp(&b.0));
-    let Some((start, k)) = widest else { return Ok(false) };
-    let (mut lo, mut hi) = (places[k - 1], places[k]);
-    let mut step = start;
     for _ in 0..HALVINGS {
-        let middle = 0.5 * (lo + hi);
-        let u: Vec<f64> = [lo, middle, hi].iter().flat_map(|s| row(*s)).collect();
+        let u: Vec<f64> = steps.iter().flat_map(Step::rows).collect();
+        if u.is_empty() {
+            break;
+        }
         meter.sample(setup.wo, &u, setup.transport, &mut samples)?;
-        if !samples.lobe.iter().all(|l| l.is_valid()) {
-            return Ok(false);
-        }
-        let halves = [1, 2].map(|r| (samples.wi[r] - samples.wi[r - 1]).length());
-        if halves[0] > halves[1] {
-            hi = middle
-        } else {
-            lo = middle
-        }
-        step = halves[0].max(halves[1]);
+        let mut first = 0;
+        steps.retain_mut(|step| {
+            let rows = first..first + 3;
+            first += 3;
+            let valid = samples.lobe[rows.clone()].iter().all(|l| l.is_valid());
+            step.halve(&samples.wi[rows]);
+            valid
+        });
     }
     // 24 halvings shrink a smooth step by 6e-8, a square root's by 2e-4. Steps
     // of rounding do not shrink.
-    Ok(step > 0.01 * start && start > 1e-6)
+    Ok(steps.iter().any(|step| step.width > 0.01 * step.start && step.start > 1e-6))
+}
+
+/// A line through the unit square along one of its axes.
+#[derive(Clone)]
+struct Line {
+    u: Vec<f64>,
+    axis: usize,
+}
+
+impl Line {
+    fn row(&self, s: f64) -> Vec<f64> {
+        let mut row = self.u.clone();
+        row[self.axis] = s;
+        row
+    }
+}
+
+/// The widest step of wi on a line, as it is halved.
+struct Step {
+    line: Line,
+    ends: [f64; 2],
+    start: f64,
+    width: f64,
+}
+
+impl Step {
+    fn middle(&self) -> f64 {
+        0.5 * (self.ends[0] + self.ends[1])
+    }
+
+    fn rows(&self) -> Vec<f64> {
+        let [lo, hi] = self.ends;
+        [lo, self.middle(), hi].iter().flat_map(|s| self.line.row(*s)).collect()
+    }
+
+    /// Goes on with the wider half, of wi at both ends and between them.
+    fn halve(&mut self, wi: &[Direction]) {
+        let middle = self.middle();
+        let halves = [1, 2].map(|r| (wi[r] - wi[r - 1]).length());
+        self.ends[usize::from(halves[0] > halves[1])] = middle;
+        self.width = halves[0].max(halves[1]);
+    }
 }
 
 /// Points whose other origins are looked for, draws among which, starts for
@@ -252,6 +285,8 @@ fn has_second_origin(
     let (mut draws, mut around) = (Samples::default(), Samples::default());
     meter.sample(setup.wo, &u, setup.transport, &mut draws)?;
     let apart = |a: &[f64], b: &[f64]| active.iter().map(|k| (a[*k] - b[*k]).abs()).fold(0.0, f64::max);
+    // Every walk from a draw to a point, side by side.
+    let mut walks: Vec<(&Point, Vec<f64>)> = Vec::new();
     for point in points.iter().take(SOUGHT) {
         let mut starts: Vec<usize> = (0..ORIGINS)
             .filter(|k| draws.lobe[*k].is_continuous() && apart(&u[k * d..(k + 1) * d], &point.u) > 0.02)
@@ -260,42 +295,52 @@ fn has_second_origin(
             let far = |k: &usize| (draws.wi[*k] - point.wi).length();
             far(a).total_cmp(&far(b))
         });
-        for start in starts.into_iter().take(STARTS) {
-            let mut at = u[start * d..(start + 1) * d].to_vec();
-            for _ in 0..STEPS {
-                let mut rows = at.clone();
-                for k in active {
-                    for step in [STEP, -STEP] {
-                        let mut row = at.clone();
-                        row[k] += step;
-                        rows.extend(row);
-                    }
-                }
-                meter.sample(setup.wo, &rows, setup.transport, &mut around)?;
-                if !around.lobe.iter().all(|l| l.is_continuous()) {
-                    break;
-                }
-                let rest = point.wi - around.wi[0];
-                if rest.length() < 1e-9 {
-                    if apart(&at, &point.u) > 1e-3 {
-                        return Ok(true);
-                    }
-                    break;
-                }
-                let slope = |k: usize| (around.wi[k] - around.wi[k + 1]) * (0.5 / STEP);
-                let (a, b) = (slope(1), slope(3));
-                // Least squares in the two numbers that move wi.
-                let (aa, ab, bb) = (a.dot(a), a.dot(b), b.dot(b));
-                let (ar, br) = (a.dot(rest), b.dot(rest));
-                let determinant = aa * bb - ab * ab;
-                let steps = [(ar * bb - br * ab) / determinant, (br * aa - ar * ab) / determinant];
-                for (k, step) in active.into_iter().zip(steps) {
-                    at[k] += step.clamp(-0.1, 0.1);
-                }
-                if !active.iter().all(|k| at[*k] > 2.0 * STEP && at[*k] < 1.0 - 2.0 * STEP) {
-                    break;
+        walks.extend(starts.into_iter().take(STARTS).map(|k| (point, u[k * d..(k + 1) * d].to_vec())));
+    }
+    for _ in 0..STEPS {
+        let mut rows = Vec::new();
+        for (_, at) in &walks {
+            rows.extend_from_slice(at);
+            for k in active {
+                for step in [STEP, -STEP] {
+                    let mut row = at.clone();
+                    row[k] += step;
+                    rows.extend(row);
                 }
             }
+        }
+        if rows.is_empty() {
+            break;
+        }
+        meter.sample(setup.wo, &rows, setup.transport, &mut around)?;
+        let mut arrived = false;
+        let mut first = 0;
+        walks.retain_mut(|(point, at)| {
+            let rows = first..first + 5;
+            first += 5;
+            if !around.lobe[rows.clone()].iter().all(|l| l.is_continuous()) {
+                return false;
+            }
+            let wi = &around.wi[rows];
+            let rest = point.wi - wi[0];
+            if rest.length() < 1e-9 {
+                arrived |= apart(at, &point.u) > 1e-3;
+                return false;
+            }
+            let slope = |k: usize| (wi[k] - wi[k + 1]) * (0.5 / STEP);
+            let (a, b) = (slope(1), slope(3));
+            // Least squares in the two numbers that move wi.
+            let (aa, ab, bb) = (a.dot(a), a.dot(b), b.dot(b));
+            let (ar, br) = (a.dot(rest), b.dot(rest));
+            let determinant = aa * bb - ab * ab;
+            let steps = [(ar * bb - br * ab) / determinant, (br * aa - ar * ab) / determinant];
+            for (k, step) in active.into_iter().zip(steps) {
+                at[k] += step.clamp(-0.1, 0.1);
+            }
+            active.iter().all(|k| at[*k] > 2.0 * STEP && at[*k] < 1.0 - 2.0 * STEP)
+        });
+        if arrived {
+            return Ok(true);
         }
     }
     Ok(false)
