@@ -240,7 +240,7 @@ fn grades_are_the_same_for_any_number_of_workers_and_after_a_kill() {
     std::fs::remove_dir_all(desk.path("class/fay")).unwrap();
     run(&desk, "--workers 1 --out one").ends(0);
     run(&desk, "--workers 3 --out three").ends(0);
-    // Killed as soon as there is something.
+    // Killed as soon as there is something. What it had unpacked goes with the next run.
     let mut child = desk.spawn(GONIO, "grade rubric.toml class --out killed --workers 2");
     let begun = Instant::now();
     while desk.files("killed/submissions").keys().filter(|name| name.ends_with("grade.json")).count() < 2 {

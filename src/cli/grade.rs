@@ -14,10 +14,11 @@ use crate::grading::{
 use crate::plugins::{Isolation, isolation};
 use crate::registry::{Registry, nearest};
 use crate::report::summary;
-use std::fs::File;
+use std::fs::{self, File};
 use std::path::{Path, PathBuf};
 use std::sync::Arc;
 use std::sync::atomic::Ordering;
+use tempfile::TempDir;
 
 /// Arguments of `gonio grade`.
 #[derive(Debug, clap::Args)]
@@ -76,10 +77,24 @@ pub fn grade(args: &GradeArgs, registry: &Registry, voice: Voice) -> Result<Exit
     let command = move |id: &str, item: &str| {
         shell_words::join(["gonio", "grade", &typed, &places, "--only", id, "--item", item])
     };
+    let nowhere;
+    let out = match &args.out {
+        Some(out) if args.item.is_none() => out.as_path(),
+        None if args.item.is_none() && !args.own => Path::new("grades"),
+        // Nothing is kept.
+        _ => {
+            nowhere = tempfile::tempdir().map_err(|e| CliError::Internal(e.to_string()))?;
+            nowhere.path()
+        }
+    };
+    prove_writable(out)?;
+    let _alone = alone(out)?;
+    let scratch = scratch(out)?;
     let wishes = Wishes {
         explanations: Arc::new(registry.explanations()),
         stop: stop.clone(),
         command: Arc::new(command.clone()),
+        scratch: scratch.path().to_path_buf(),
         again: args.again,
         own: args.own,
     };
@@ -87,17 +102,6 @@ pub fn grade(args: &GradeArgs, registry: &Registry, voice: Voice) -> Result<Exit
     if let Some(item) = &args.item {
         return examine(&grader, &chosen[0], item, voice);
     }
-    let scratch;
-    let out = match &args.out {
-        Some(out) => out.as_path(),
-        None if args.own => {
-            scratch = tempfile::tempdir().map_err(|e| CliError::Internal(e.to_string()))?;
-            scratch.path()
-        }
-        None => Path::new("grades"),
-    };
-    prove_writable(out)?;
-    let _alone = alone(out)?;
     if !args.own {
         solution_is_right(&grader, out, voice)?;
     }
@@ -237,6 +241,19 @@ fn alone(out: &Path) -> Result<File, CliError> {
             help: "wait for it, or name another folder: --out DIR".into(),
         }),
     }
+}
+
+/// A folder in `out`, which nobody else has, that is removed at the end. One that was
+/// left by a gonio that was killed goes too.
+fn scratch(out: &Path) -> Result<TempDir, CliError> {
+    const PREFIX: &str = ".unpacked-";
+    let wrong = |why| CliError::Output { path: out.into(), why };
+    for entry in fs::read_dir(out).map_err(wrong)?.flatten() {
+        if entry.file_name().to_string_lossy().starts_with(PREFIX) {
+            fs::remove_dir_all(entry.path()).map_err(wrong)?;
+        }
+    }
+    tempfile::Builder::new().prefix(PREFIX).tempdir_in(out).map_err(wrong)
 }
 
 /// The teacher's own submission must lose nothing, or a correct one would.

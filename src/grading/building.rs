@@ -9,7 +9,7 @@ use crate::registry::Registry;
 use crate::report::write_whole;
 use std::ffi::OsString;
 use std::io;
-use std::path::PathBuf;
+use std::path::{Path, PathBuf};
 use std::sync::Arc;
 use tempfile::TempDir;
 
@@ -31,10 +31,15 @@ fn broken(why: impl Into<String>) -> Broken {
 }
 
 impl Prepared {
-    /// Unpacks it and finds its language; `Err` within is the submission's fault.
-    pub fn new(rubric: &Rubric, submission: &Submission) -> Result<Result<Self, Broken>, Failure> {
-        let system = |e: io::Error| Failure::System(format!("no temporary folder: {e}"));
-        let folder = tempfile::Builder::new().prefix("gonio-grade-").tempdir().map_err(system)?;
+    /// Unpacks it below `scratch` and finds its language; `Err` within is the submission's
+    /// fault.
+    pub fn new(
+        rubric: &Rubric,
+        submission: &Submission,
+        scratch: &Path,
+    ) -> Result<Result<Self, Broken>, Failure> {
+        let system = |e: io::Error| Failure::System(format!("no folder in {}: {e}", scratch.display()));
+        let folder = tempfile::tempdir_in(scratch).map_err(system)?;
         let files = folder.path().join("work");
         std::fs::create_dir(&files).map_err(system)?;
         if let Err(why) = submission.unpack(&files) {

@@ -12,7 +12,7 @@ use crate::engine::{Draws, Options};
 use crate::registry::Registry;
 use crate::report::{Carried, Diagnosis, FileError, Recording, Report, record, write_report};
 use crate::suite::{Case, Plan};
-use std::path::Path;
+use std::path::{Path, PathBuf};
 use std::sync::Arc;
 use std::sync::atomic::{AtomicBool, Ordering};
 use std::time::Instant;
@@ -29,6 +29,8 @@ pub struct Wishes {
     pub stop: Arc<AtomicBool>,
     /// What to type to have an item of a submission measured again: both by their ids.
     pub command: Arc<Command>,
+    /// Where submissions are unpacked and built while they are measured; it must be there.
+    pub scratch: PathBuf,
     /// Whether what is kept is measured again.
     pub again: bool,
     /// Whether a student grades, who may lack the solution.
@@ -97,7 +99,7 @@ impl Grader {
                 let wrong = |b: Broken| {
                     Failure::System(format!("the solution: {}\n{}", b.why, b.said).trim_end().into())
                 };
-                let prepared = Prepared::new(&rubric, &submission)?.map_err(wrong)?;
+                let prepared = Prepared::new(&rubric, &submission, &wishes.scratch)?.map_err(wrong)?;
                 let opened = prepared.open(&rubric).map_err(wrong)?;
                 Some((prepared, opened))
             }
@@ -124,7 +126,7 @@ impl Grader {
     /// # Errors
     /// What is not the submission's fault.
     pub fn grade(&self, submission: &Submission, folder: &Path) -> Result<Graded, Failure> {
-        let prepared = match Prepared::new(&self.rubric, submission)? {
+        let prepared = match Prepared::new(&self.rubric, submission, &self.wishes.scratch)? {
             Ok(prepared) => prepared,
             Err(why) => {
                 // It has no digest, and is looked at again the next time.
@@ -138,7 +140,8 @@ impl Grader {
             Kept::read(folder).filter(|kept| !self.wishes.again && kept.state.submission == state.submission);
         // Why something is broken may lie in the machine, where a compiler was missing.
         if let Some(kept) = kept.as_ref().filter(|kept| kept.state == state && kept.grade.broken.is_none())
-            && let Ok(grade) = self.rescored(submission, kept)
+            && let Some(Ok(grade)) =
+                kept.report.as_ref().map(|report| self.rescored(submission, kept, report))
         {
             return finish(folder, state, grade, kept.report.clone(), Took::default());
         }
@@ -209,7 +212,7 @@ impl Grader {
     pub fn examine(&self, submission: &Submission, item: &str) -> Result<Result<Report, Broken>, Failure> {
         let items = self.rubric.items.iter().zip(&self.measurement.of_item);
         let own: Vec<(&Item, &Vec<usize>)> = items.filter(|(i, _)| i.id == item).collect();
-        let prepared = match Prepared::new(&self.rubric, submission)? {
+        let prepared = match Prepared::new(&self.rubric, submission, &self.wishes.scratch)? {
             Ok(prepared) => prepared,
             Err(why) => return Ok(Err(why)),
         };
@@ -242,18 +245,13 @@ impl Grader {
     }
 
     /// A grade from what was measured before.
-    fn rescored(&self, submission: &Submission, kept: &Kept) -> Result<Grade, String> {
-        let measured = match &kept.report {
-            Some(report) => Measured::of(&self.measurement, report)?,
-            None => Measured::nothing(),
-        };
+    fn rescored(&self, submission: &Submission, kept: &Kept, report: &Report) -> Result<Grade, String> {
         let old = kept.grade.clone();
-        let mut grade = self.grade_of(submission, &measured);
-        grade.review.extend(kept.report.as_ref().and_then(|report| report.partial.clone()));
+        let mut grade = self.grade_of(submission, &Measured::of(&self.measurement, report)?);
+        grade.review.extend(report.partial.clone());
         Ok(Grade {
             language: old.language,
             isolation: old.isolation,
-            broken: old.broken,
             diagnoses: old.diagnoses,
             incidents: old.incidents,
             ..grade
