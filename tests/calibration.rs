@@ -79,6 +79,8 @@ fn correct_subjects_have_no_false_alarm_and_their_p_values_are_uniform() {
     assert_eq!(found.errors(), [""; 0]);
     assert_eq!((found.in_all.runs, found.left_out, found.alarms.len()), (24, 0, 0));
     assert!(found.p_values.count > 100, "{:?}", found.p_values);
+    // Two of each run with a continuous lobe.
+    assert_eq!(found.density_p_values.count, 2 * 18);
     // The dielectric has discrete lobes alone, and lambert none.
     let runs: BTreeMap<&str, u64> = found.checks.iter().map(|c| (c.check.as_str(), c.runs)).collect();
     assert_eq!((runs["sanity"], runs["discrete-lobes"], runs["goodness-of-fit"]), (24, 6, 18));

@@ -114,6 +114,21 @@ fn one_percent_of_roughness_is_found_from_0_5_to_0_001() {
     }
 }
 
+/// A width is told as one, by less of an error than cells need.
+#[test]
+fn a_wrong_width_is_seen_along_the_density() {
+    for (error, word) in [(0.015, "narrower"), (-0.015, "wider")] {
+        let mut case = case(word, Arc::new(Ggx::new(0.3, Bug::PdfAlpha(error))), 45.0, 1 << 18);
+        case.checks = vec!["goodness-of-fit".into()];
+        let results = measure(vec![case]);
+        let outcome = &results[0].findings[0].outcome;
+        let told = format!("the lobe is {word} than pdf says");
+        assert_eq!(outcome.verdict, Verdict::Fail, "{}", outcome.message);
+        assert!(outcome.message.contains("along the density"), "{}", outcome.message);
+        assert!(outcome.message.contains(&told), "{}", outcome.message);
+    }
+}
+
 #[test]
 fn a_cosine_in_eval_is_a_convention_and_told_as_one() {
     let cases = [0.0, 30.0, 60.0, 85.0]

@@ -8,7 +8,7 @@ use super::progress::Unfinished;
 use super::rates::Rate;
 use super::uniformity::Uniformity;
 use super::work::{Effort, Work};
-use crate::checks::{self, Verdict, level_p_values};
+use crate::checks::{self, Verdict, density_p_values, level_p_values};
 use crate::engine::{CaseResult, Finding};
 use crate::evidence::Figure;
 use crate::statistics::budget::{Budget, attempt};
@@ -119,6 +119,8 @@ pub struct FalseAlarms {
     pub undecided: u64,
     /// p-values of independent levels of the cell tree: ε = 0, all draws.
     pub p_values: Uniformity,
+    /// The same along the density; apart, since they depend on those of levels.
+    pub density_p_values: Uniformity,
     /// Runs whose draws ended before their number was full, so that their p-values would
     /// not be those of a fixed number.
     pub left_out: u64,
@@ -184,6 +186,7 @@ struct Observed {
     run_again: u64,
     undecided: u64,
     p_values: Vec<Figure>,
+    density_p_values: Vec<Figure>,
     left_out: u64,
 }
 
@@ -197,6 +200,7 @@ impl Observed {
         self.run_again += other.run_again;
         self.undecided += other.undecided;
         self.p_values.append(&mut other.p_values);
+        self.density_p_values.append(&mut other.density_p_values);
         self.left_out += other.left_out;
     }
 }
@@ -274,19 +278,21 @@ fn observe(case: &Arc<Case<'static>>, seed: u64, scope: &Scope, work: &Work) -> 
         crossed.suspicions = crossed.suspicions.min(1);
         crossed.fails = crossed.fails.min(1);
     }
-    (observed.p_values, observed.left_out) = p_values(result);
+    observe_p_values(result, &mut observed);
     observed
 }
 
-/// The p-values of a run at the fixed number of draws, and whether it has too few.
-fn p_values(result: &CaseResult) -> (Vec<Figure>, u64) {
+/// The p-values of a run at the fixed number of draws, or that it has too few.
+fn observe_p_values(result: &CaseResult, observed: &mut Observed) {
     let Some((evidence, draws)) = result.evidence.as_ref().and_then(|e| Some((e, e.draws.first()?))) else {
-        return (Vec::new(), 0);
+        return;
     };
     if draws.samples < result.case.settings.samples {
-        return (Vec::new(), 1);
+        observed.left_out = 1;
+        return;
     }
-    (level_p_values(evidence).into_iter().map(Figure).collect(), 0)
+    observed.p_values = level_p_values(evidence).into_iter().map(Figure).collect();
+    observed.density_p_values = density_p_values(evidence).into_iter().map(Figure).collect();
 }
 
 impl FalseAlarms {
@@ -306,7 +312,8 @@ impl FalseAlarms {
             let key = format!("false-alarms/{seed}");
             all.add(work.unit(&key, &scope.cases, |case| observe(case, seed, scope, work), sum_up)?);
         }
-        let mut p_values: Vec<f64> = all.p_values.iter().map(|p| p.0).collect();
+        let uniformity =
+            |p_values: &[Figure]| Uniformity::of(&mut p_values.iter().map(|p| p.0).collect::<Vec<f64>>());
         let of_check = |check: &&dyn checks::Check| Some(all.checks.get(check.id())?.alarms(check.id()));
         Ok(Self {
             suite: scope.suite.clone(),
@@ -319,7 +326,8 @@ impl FalseAlarms {
             alarms: all.alarms,
             run_again: all.run_again,
             undecided: all.undecided,
-            p_values: Uniformity::of(&mut p_values),
+            p_values: uniformity(&all.p_values),
+            density_p_values: uniformity(&all.density_p_values),
             left_out: all.left_out,
         })
     }
@@ -331,7 +339,7 @@ impl FalseAlarms {
 
     /// The level of each of the statements that its errors make.
     pub fn level(&self) -> f64 {
-        let statements = 2 * self.rows().count() + Uniformity::STATEMENTS;
+        let statements = 2 * (self.rows().count() + Uniformity::STATEMENTS);
         LEVEL / statements as f64
     }
 
@@ -365,6 +373,9 @@ impl FalseAlarms {
             }
         }
         errors.extend(self.p_values.errors(level));
+        errors.extend(
+            self.density_p_values.errors(level).into_iter().map(|e| format!("along the density: {e}")),
+        );
         errors
     }
 }

@@ -3,6 +3,7 @@
 use super::false_alarms::{CheckAlarms, FalseAlarms};
 use super::part::{Part, PartId, Picture};
 use super::rates::{Rate, Standing};
+use super::uniformity::Uniformity;
 use crate::report::{Histogram, Interval, IntervalPlot, IntervalRow};
 use crate::statistics::normal;
 
@@ -69,17 +70,11 @@ impl FalseAlarms {
     }
 
     fn by_p_values(&self) -> String {
-        let p = &self.p_values;
-        format!(
-            "{} p-values of independent levels (fixed N, ε = 0): Kolmogorov–Smirnov D = {:.5}, p = {:.3}; {} of them below 10⁻³, a share of {:.2e} ({:.2e} to {:.2e}, each 95 %)",
-            p.count,
-            p.distance.0,
-            p.p_value.0,
-            p.small.count,
-            p.small.count as f64 / p.count.max(1) as f64,
-            p.small.low,
-            p.small.high
-        )
+        uniformity(&self.p_values, "of independent levels")
+    }
+
+    fn by_density_p_values(&self) -> String {
+        uniformity(&self.density_p_values, "along the density")
     }
 
     /// Bins outside of the band of the picture.
@@ -124,6 +119,19 @@ impl FalseAlarms {
     }
 }
 
+fn uniformity(p: &Uniformity, of: &str) -> String {
+    format!(
+        "{} p-values {of} (fixed N, ε = 0): Kolmogorov–Smirnov D = {:.5}, p = {:.3}; {} of them below 10⁻³, a share of {:.2e} ({:.2e} to {:.2e}, each 95 %)",
+        p.count,
+        p.distance.0,
+        p.p_value.0,
+        p.small.count,
+        p.small.count as f64 / p.count.max(1) as f64,
+        p.small.low,
+        p.small.high
+    )
+}
+
 /// Half the band's width, in standard deviations of a bin.
 fn deviations() -> f64 {
     normal::quantile(libm::log(0.5 * OUTSIDE))
@@ -146,7 +154,8 @@ impl Part for FalseAlarms {
         ));
         line(format!("- At the {}.", self.by_default()));
         line(format!("- At a {}.", self.by_raised()));
-        line(format!("- {}.\n", self.by_p_values()));
+        line(format!("- {}.", self.by_p_values()));
+        line(format!("- {}.\n", self.by_density_p_values()));
         line("| check | runs | tests | suspicions | nominal ≤ | fails | nominal ≤ | rate (95 %) | nominal ≤ | rate of fails | suspicions by default | fails by default |".into());
         line("|:--|--:|--:|--:|--:|--:|--:|--:|--:|:--|--:|--:|".into());
         for row in self.rows() {
@@ -208,7 +217,7 @@ impl Part for FalseAlarms {
             "false alarms: {} runs, {} cases of the suite `{}` at {} seeds",
             self.in_all.runs, self.cases, self.suite, self.seeds
         );
-        let figures = [self.by_default(), self.by_raised(), self.by_p_values()];
+        let figures = [self.by_default(), self.by_raised(), self.by_p_values(), self.by_density_p_values()];
         std::iter::once(runs).chain(figures.map(|f| format!("  {f}"))).collect()
     }
 }

@@ -22,7 +22,7 @@ mod support;
 mod weight;
 mod white_furnace;
 
-pub use goodness_of_fit::{level_p_values, strict_ln_p, true_effects};
+pub use goodness_of_fit::{density_p_values, level_p_values, strict_ln_p, true_effects};
 pub use outcome::{Check, Effect, Judgement, Outcome, POWER, Terms, Verdict, needs_kind};
 
 /// Every check, in the order of reports.

@@ -12,6 +12,7 @@ pub mod multiscale;
 pub mod noncentral;
 pub mod normal;
 pub mod roots;
+pub mod smooth;
 pub mod special;
 pub mod streams;
 pub mod uniformity;
