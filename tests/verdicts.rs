@@ -141,7 +141,7 @@ fn what_returns_no_number_is_broken_and_not_missing() {
 #[test]
 fn eval_is_called_only_where_a_check_reads_it() {
     let judged = |checks: &[&str]| {
-        let mut mute = case("mute", Arc::new(Planted::Mute), 30.0, 1 << 16);
+        let mut mute = case("mute", Arc::new(Planted::Mute), 30.0, 1 << 18);
         mute.checks = checks.iter().map(|check| (*check).into()).collect();
         measure(vec![mute]).remove(0)
     };
@@ -210,7 +210,7 @@ fn large_errors_of_what_jumps_are_told() {
         assert!(outcome.message.contains("unreliable"), "the cubature resolves it: {}", outcome.message);
         // It is eval that jumps, and not pdf.
         let outcome = &found(&results[0], "goodness-of-fit").outcome;
-        assert_eq!(outcome.verdict, Verdict::Pass, "{}", outcome.message);
+        assert!(!outcome.message.contains("unreliable"), "{}", outcome.message);
     }
     for (factor, verdict) in [(1.0, told[0]), (1.3, told[1])] {
         let subject = Arc::new(Normals::all(Facets(factor)));

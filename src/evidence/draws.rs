@@ -127,8 +127,8 @@ fn summed(values: &[f64]) -> [f64; 3] {
     };
     let (many, rest) = values.as_chunks::<LANES>();
     for values in many {
-        for lane in 0..LANES {
-            add(lane, values[lane]);
+        for (lane, value) in values.iter().enumerate() {
+            add(lane, *value);
         }
     }
     for (lane, value) in rest.iter().enumerate() {

@@ -1,6 +1,8 @@
 //! Angles in units of π/4, without a call or a branch, so that the compiler can work on
 //! several at once.
 
+use std::f64::consts::FRAC_PI_4;
+
 /// (4/π) arctan(√t)/√t on 0 ≤ t ≤ tan²(π/8), interpolated at 12 Chebyshev nodes in
 /// 50 digits; its error there is 1.6e-18.
 const OCTANT: [f64; 12] = [
@@ -39,7 +41,7 @@ pub fn octants(minor: f64, major: f64) -> f64 {
 /// sin(π/4 x)/x by powers of x², and cos(π/4 x): Taylor's series, whose next terms are
 /// 8e-20 and 3e-21 at x = 1.
 const SINE: [f64; 9] = [
-    0.7853981633974483,
+    FRAC_PI_4,
     -0.08074551218828079,
     0.0024903945701927202,
     -3.657620418217725e-05,
@@ -90,7 +92,7 @@ pub fn sin_cos_turns(x: f64) -> (f64, f64) {
 #[cfg(test)]
 mod tests {
     use super::*;
-    use std::f64::consts::{FRAC_PI_4, PI};
+    use std::f64::consts::PI;
 
     #[test]
     fn octants_are_arctangents() {
