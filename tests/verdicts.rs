@@ -68,6 +68,8 @@ enum Planted {
     NotANumber,
     /// eval() is this much brighter, on the white fields of a board of many.
     Board(f64),
+    /// eval() panics.
+    Mute,
     /// From the start to this draw samples go to x > 0 much too often, then this share.
     Leaning { until: u64, share: f64, drawn: AtomicU64 },
 }
@@ -85,6 +87,7 @@ impl Bsdf for Planted {
         let above = wo.z > 0.0 && wi.z > 0.0;
         let f = match self {
             Self::Board(factor) => factor * 2.0 * white_field(wi) / PI,
+            Self::Mute => panic!("nobody reads this"),
             _ => 0.5 / PI,
         };
         Spectrum::from(if above { f } else { 0.0 })
@@ -103,6 +106,10 @@ impl Bsdf for Planted {
         match self {
             Self::NotANumber => pdf = f64::NAN,
             Self::Board(_) => {}
+            Self::Mute => {
+                let weight = Spectrum::from(0.5);
+                return (wo.z > 0.0).then_some(Sample { wi, weight, pdf, lobe: Lobe::DIFFUSE_REFLECTION });
+            }
             Self::Leaning { until, share, drawn } => {
                 let early = drawn.fetch_add(1, Ordering::Relaxed) < *until;
                 if u[2] < if early { 0.3 } else { *share } {
@@ -129,6 +136,46 @@ fn what_returns_no_number_is_broken_and_not_missing() {
     assert!(sanity.message.contains("pdf() is finite"), "{}", sanity.message);
     let skipped = told(&results, Verdict::Skipped);
     assert!(skipped.iter().all(|m| !m.contains("not implemented")), "{skipped:#?}");
+}
+
+#[test]
+fn eval_is_called_only_where_a_check_reads_it() {
+    let judged = |checks: &[&str]| {
+        let mut mute = case("mute", Arc::new(Planted::Mute), 30.0, 1 << 18);
+        mute.checks = checks.iter().map(|check| (*check).into()).collect();
+        measure(vec![mute]).remove(0)
+    };
+    let spared = judged(&["goodness-of-fit", "normalization", "jacobian"]);
+    assert_eq!(told(&[spared], Verdict::Pass).len(), 3);
+    let called = judged(&["normalization", "energy"]);
+    assert_eq!(found(&called, "normalization").outcome.verdict, Verdict::Pass);
+    let energy = &found(&called, "energy").outcome;
+    assert_eq!(energy.verdict, Verdict::Error);
+    assert!(energy.message.contains("nobody reads this"), "{}", energy.message);
+}
+
+/// Judged alone, without eval, a check says what it says beside all others; and a failure
+/// leaves the evidence of one that eval was called for.
+#[test]
+fn sparing_eval_changes_no_number() {
+    for subject in ["mutant-no-jacobian", "torrance-sparrow:alpha=0.1"] {
+        let alone = registered(subject, 60.0, 1 << 16, "goodness-of-fit");
+        let all = Case { checks: Vec::new(), ..alone.clone() };
+        let results = measure(vec![alone, all]);
+        let [alone, all] = &results[..] else { panic!("two cases") };
+        let [one, other] = [alone, all].map(|r| &found(r, "goodness-of-fit").outcome);
+        assert_eq!((one.verdict, one.ln_p, &one.message), (other.verdict, other.ln_p, &other.message));
+        let [one, other] = [alone, all].map(|r| r.evidence.as_ref().unwrap());
+        assert_eq!(one.partition, other.partition);
+        if subject.starts_with("mutant") {
+            assert_eq!(found(alone, "goodness-of-fit").outcome.verdict, Verdict::Fail);
+            assert_eq!((&one.integrals, &one.samples), (&other.integrals, &other.samples));
+        } else {
+            let [one, other] = [one, other].map(|evidence| evidence.integrals.as_ref().unwrap());
+            assert_eq!((&one.pdf, one.cross_check), (&other.pdf, other.cross_check));
+            assert!(one.value.is_empty() && !other.value.is_empty());
+        }
+    }
 }
 
 /// A suspicion at the first look, of an error that only all draws confirm.
@@ -159,8 +206,11 @@ fn large_errors_of_what_jumps_are_told() {
             let outcome = &found(&results[0], check).outcome;
             assert_eq!(outcome.verdict, verdict, "{check} of {factor}: {}", outcome.message);
         }
-        let outcome = &found(&results[0], "goodness-of-fit").outcome;
+        let outcome = &found(&results[0], "albedo").outcome;
         assert!(outcome.message.contains("unreliable"), "the cubature resolves it: {}", outcome.message);
+        // It is eval that jumps, and not pdf.
+        let outcome = &found(&results[0], "goodness-of-fit").outcome;
+        assert!(!outcome.message.contains("unreliable"), "{}", outcome.message);
     }
     for (factor, verdict) in [(1.0, told[0]), (1.3, told[1])] {
         let subject = Arc::new(Normals::all(Facets(factor)));

@@ -20,6 +20,18 @@ pub trait Bsdf: Send + Sync {
     fn pdf(&self, wo: Direction, wi: Direction, transport: Transport) -> f64;
     /// Draws a direction from `u` in [0,1)^d; `None` where there is no sample.
     fn sample(&self, wo: Direction, u: &[f64], transport: Transport) -> Option<Sample>;
+    /// Draws for each row of `u` into `out`, which comes cleared. A model that draws many
+    /// at once faster than one by one does it here; each must be what
+    /// [`sample`](Self::sample) gives.
+    fn sample_rows(
+        &self,
+        wo: Direction,
+        u: &[f64],
+        transport: Transport,
+        out: &mut Samples,
+    ) -> Result<(), SubjectError> {
+        one_by_one(self, wo, u, transport, out)
+    }
     /// Directions near which pdf or eval may have a narrow peak that nobody
     /// would guess. Mirror, refracted and retro-reflected directions are
     /// looked at anyway.
@@ -122,6 +134,31 @@ pub enum SubjectError {
     Broken(String),
 }
 
+/// Draws for each row of `u` by [`Bsdf::sample`].
+pub(crate) fn one_by_one<B: Bsdf + ?Sized>(
+    bsdf: &B,
+    wo: Direction,
+    u: &[f64],
+    transport: Transport,
+    out: &mut Samples,
+) -> Result<(), SubjectError> {
+    let dimensions = bsdf.describe().dimensions;
+    for u in u.chunks_exact(dimensions.max(1)) {
+        let sample = bsdf.sample(wo, u, transport);
+        if let Some(s) = &sample
+            && s.weight.len() != out.channels
+        {
+            return Err(SubjectError::WrongLength {
+                function: "sample",
+                expected: out.channels,
+                got: s.weight.len(),
+            });
+        }
+        out.push(sample.as_ref());
+    }
+    Ok(())
+}
+
 impl<B: Bsdf> Subject for B {
     fn describe(&self) -> Description {
         Bsdf::describe(self)
@@ -172,21 +209,7 @@ impl<B: Bsdf> Subject for B {
         transport: Transport,
         out: &mut Samples,
     ) -> Result<(), SubjectError> {
-        let dimensions = Bsdf::describe(self).dimensions;
-        for u in u.chunks_exact(dimensions.max(1)) {
-            let sample = Bsdf::sample(self, wo, u, transport);
-            if let Some(s) = &sample
-                && s.weight.len() != out.channels
-            {
-                return Err(SubjectError::WrongLength {
-                    function: "sample",
-                    expected: out.channels,
-                    got: s.weight.len(),
-                });
-            }
-            out.push(sample.as_ref());
-        }
-        Ok(())
+        self.sample_rows(wo, u, transport, out)
     }
 
     fn hints(&self, wo: Direction) -> Vec<Direction> {

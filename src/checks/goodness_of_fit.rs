@@ -245,7 +245,7 @@ impl Check for GoodnessOfFit {
     }
 
     fn needs(&self) -> &'static [Measurement] {
-        &[Measurement::Integrals, Measurement::Draws]
+        &[Measurement::Masses, Measurement::Draws]
     }
 
     fn applies(&self, description: &Description) -> Result<(), String> {
@@ -261,7 +261,7 @@ impl Check for GoodnessOfFit {
         let (Some(partition), Some(integrals)) = (&evidence.partition, &evidence.integrals) else {
             return Judgement::Missing;
         };
-        if let Err(reason) = integrals.reliable() {
+        if let Err(reason) = integrals.masses_reliable() {
             return Outcome::inconclusive(reason).into();
         }
         let Some(draws) = evidence.draws.get(terms.attempt) else { return Judgement::Missing };

@@ -21,7 +21,7 @@ impl Check for Normalization {
     }
 
     fn needs(&self) -> &'static [Measurement] {
-        &[Measurement::Integrals, Measurement::Draws]
+        &[Measurement::Masses, Measurement::Draws]
     }
 
     fn applies(&self, description: &Description) -> Result<(), String> {
@@ -37,7 +37,7 @@ impl Check for Normalization {
         let Some(integrals) = &evidence.integrals else { return Judgement::Missing };
         let (least, deviation) = integrals.cross_check;
         let excess = least - 10.0 * deviation > 1.0 + terms.mean_tolerance;
-        if let (Err(reason), false) = (integrals.reliable(), excess) {
+        if let (Err(reason), false) = (integrals.masses_reliable(), excess) {
             return Outcome::inconclusive(reason).into();
         }
         let Some(draws) = evidence.draws.get(terms.attempt) else { return Judgement::Missing };

@@ -179,6 +179,7 @@ impl<'r, 'a> Run<'r, 'a> {
                 .with("subject", description.key(&case.spelling))
                 .with("wo", &format!("{:x} {:x} {:x}", wo.x.to_bits(), wo.y.to_bits(), wo.z.to_bits()))
                 .with("transport", &case.transport.to_string()),
+            eval: open.iter().flat_map(|o| o.check.needs()).any(|m| m.reads_eval()),
             mis: description.has.eval
                 && description.has.pdf
                 && open.iter().any(|o| o.check.needs().contains(&Measurement::Mis)),
@@ -222,6 +223,9 @@ impl<'r, 'a> Run<'r, 'a> {
         }
         self.judge(0, None, findings, sanity);
         self.confirm(findings);
+        if findings.iter().any(|f| f.outcome.verdict == Verdict::Fail) {
+            self.gatherer.complete(self.company);
+        }
         self.gatherer.into_evidence()
     }
 

@@ -59,7 +59,8 @@ pub fn run(plan: &Plan<'static>, options: &Options, observe: &mut dyn FnMut(&Eve
     let start = Instant::now();
     let (tests, share) = shares(plan);
     let chosen = options.cases.clone().unwrap_or_else(|| (0..plan.cases.len()).collect());
-    let pool = pool(options.threads.unwrap_or(0));
+    // A single case has no use for more than one thread.
+    let pool = pool(if chosen.len() == 1 { 1 } else { options.threads.unwrap_or(0) });
     let threads = pool.current_num_threads();
     observe(&Event::Started { cases: chosen.len(), threads });
     let allotment = Allotment::new(&options.draws, plan, &chosen, threads);

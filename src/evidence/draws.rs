@@ -81,16 +81,25 @@ impl Sums {
         self.largest = Figure(self.largest.0.max(block.largest.0));
     }
 
-    /// Of rows of `channels` values, each row times its factor.
-    fn of(rows: &[f64], channels: usize, factor: impl Fn(usize) -> f64) -> Self {
+    /// Of rows of `channels` values, each row times its factor where there are any.
+    fn of(rows: &[f64], channels: usize, factors: Option<&[f64]>) -> Self {
         let mut sums = Self::new(channels);
-        sums.count = (rows.len() / channels) as u64;
+        let count = rows.len() / channels;
+        sums.count = count as u64;
+        let mut column = Vec::with_capacity(count);
         for c in 0..channels {
+            column.clear();
             // One channel is a stride that the compiler knows.
-            let [sum, square, largest] = match channels {
-                1 => column(rows, 1, 0, &factor),
-                n => column(rows, n, c, &factor),
-            };
+            match channels {
+                1 => column.extend_from_slice(rows),
+                _ => column.extend(rows.iter().skip(c).step_by(channels)),
+            }
+            let [sum, square, largest] = pulp::Arch::new().dispatch(|| {
+                if let Some(factors) = factors {
+                    column.iter_mut().zip(factors).for_each(|(value, factor)| *value *= factor);
+                }
+                summed(&column)
+            });
             (sums.sum[c], sums.square[c]) = (sum, square);
             sums.largest = Figure(sums.largest.0.max(largest));
         }
@@ -105,26 +114,25 @@ impl Sums {
     }
 }
 
-/// Sum, sum of squares and maximum of column `c`, each row times its factor, in
-/// [`LANES`] partial sums side by side: a single one waits for each addition.
+/// Sum, sum of squares and maximum, in [`LANES`] partial sums side by side: a single one
+/// waits for each addition.
 #[inline(always)]
-fn column(rows: &[f64], channels: usize, c: usize, factor: &impl Fn(usize) -> f64) -> [f64; 3] {
+fn summed(values: &[f64]) -> [f64; 3] {
     let (mut sum, mut square, mut largest) = ([0.0; LANES], [0.0; LANES], [0.0f64; LANES]);
-    let n = rows.len() / channels;
-    let mut add = |lane: usize, k: usize| {
-        let value = rows[k * channels + c] * factor(k);
+    let mut add = |lane: usize, value: f64| {
         let value = if value < LARGEST { value } else { LARGEST };
         sum[lane] += value;
         square[lane] += value * value;
         largest[lane] = if value > largest[lane] { value } else { largest[lane] };
     };
-    for chunk in 0..n / LANES {
-        for lane in 0..LANES {
-            add(lane, chunk * LANES + lane);
+    let (many, rest) = values.as_chunks::<LANES>();
+    for values in many {
+        for (lane, value) in values.iter().enumerate() {
+            add(lane, *value);
         }
     }
-    for k in n / LANES * LANES..n {
-        add(k % LANES, k);
+    for (lane, value) in rest.iter().enumerate() {
+        add(lane, *value);
     }
     let total = |lanes: [f64; LANES]| lanes.iter().sum();
     [total(sum), total(square), largest.into_iter().fold(0.0, f64::max)]
@@ -181,7 +189,7 @@ impl CosineDensity {
     }
 
     /// The density at `wi` in sr⁻¹.
-    #[inline]
+    #[inline(always)]
     pub fn at(&self, wi: Direction) -> f64 {
         if wi.z > 0.0 { self.front * wi.z } else { -self.back * wi.z }
     }
@@ -298,20 +306,25 @@ impl Draws {
         partition.locate_all(points, leaves);
 
         let cosine = CosineDensity::new(setup);
-        // Of no sample, whose weights are 0, it is 0 too.
-        let share = |(pdf, wi): (&f64, &Direction)| pdf / (pdf + cosine.at(*wi)).max(f64::MIN_POSITIVE);
         balance.clear();
-        balance.extend(samples.pdf.iter().zip(&samples.wi).map(share));
+        if setup.mis {
+            balance.extend_from_slice(&samples.pdf);
+            // Of no sample, whose weights are 0, it is 0 too.
+            let shares = balance.iter_mut().zip(&samples.wi);
+            pulp::Arch::new().dispatch(|| {
+                shares.for_each(|(p, wi)| *p /= (*p + cosine.at(*wi)).max(f64::MIN_POSITIVE));
+            });
+        }
 
         let row = |k: usize| &u[k * meter.dimensions()..(k + 1) * meter.dimensions()];
         let has_pdf = meter.description.has.pdf;
         serial.clear();
-        for (k, leaf) in leaves.iter().enumerate() {
-            let lobe = samples.lobe[k];
+        for (k, (leaf, lobe)) in leaves.iter().zip(&samples.lobe).enumerate() {
+            let lobe = *lobe;
             if !lobe.is_continuous() {
                 if lobe.is_valid() {
                     // No cosine meets it.
-                    balance[k] = 1.0;
+                    balance.get_mut(k).into_iter().for_each(|share| *share = 1.0);
                     self.add_discrete(setup, samples.wi[k], lobe, samples.pdf[k], samples.weight_of(k));
                 } else {
                     self.none += 1;
@@ -338,7 +351,7 @@ impl Draws {
         if let Some(weights) = weights {
             weights.look(&samples.weight, channels);
         }
-        let weight = Sums::of(&samples.weight, channels, |_| 1.0);
+        let weight = Sums::of(&samples.weight, channels, None);
         if weight.largest.0 > self.weight.largest.0 {
             let heaviest = samples.weight.iter().position(|w| w.min(LARGEST) == weight.largest.0);
             self.heaviest = heaviest.map(|at| at / channels).map(|k| {
@@ -347,9 +360,9 @@ impl Draws {
             });
         }
         self.weight.append(&weight);
-        self.mis_sampler.append(&Sums::of(&samples.weight, channels, |k| balance[k]));
 
         if setup.mis {
+            self.mis_sampler.append(&Sums::of(&samples.weight, channels, Some(balance)));
             lights.clear();
             lights.extend(
                 (0..BLOCK / PER_LIGHT).map(|_| {
@@ -358,8 +371,9 @@ impl Draws {
             );
             meter.eval(setup.wo, lights, setup.transport, value)?;
             meter.pdf(setup.wo, lights, setup.transport, density)?;
-            let factor = |k: usize| lights[k].abs_cos_theta() / (density[k] + cosine.at(lights[k]));
-            self.mis_cosine.append(&Sums::of(value, channels, factor));
+            let factor = |(p, wi): (&f64, &Direction)| wi.abs_cos_theta() / (p + cosine.at(*wi));
+            let factors: Vec<f64> = density.iter().zip(lights.iter()).map(factor).collect();
+            self.mis_cosine.append(&Sums::of(value, channels, Some(&factors)));
         }
         self.samples += BLOCK;
         Ok(())

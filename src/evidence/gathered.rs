@@ -4,7 +4,7 @@ use super::draws::Draws;
 use super::exact::{Repeats, corners, rotations};
 use super::facets::Facets;
 use super::fresnel::FresnelLaws;
-use super::integrals::Integrals;
+use super::integrals::{Integrals, Integrated};
 use super::jacobian::Jacobian;
 use super::meter::{Evaluations, Halt, Meter, Sanity, Watch};
 use super::pairs::Pairs;
@@ -41,7 +41,9 @@ pub enum Measurement {
     Jacobian,
     /// Changed parameters, and the other side.
     Variations,
-    /// Integrals over the cells.
+    /// Integrals of pdf over the cells.
+    Masses,
+    /// Those of the values besides.
     Integrals,
     /// Draws counted in the cells.
     Draws,
@@ -57,7 +59,7 @@ pub enum Measurement {
 
 impl Measurement {
     /// Every one.
-    pub const ALL: [Self; 13] = [
+    pub const ALL: [Self; 14] = [
         Self::Corners,
         Self::Samples,
         Self::Pairs,
@@ -65,6 +67,7 @@ impl Measurement {
         Self::Rotations,
         Self::Jacobian,
         Self::Variations,
+        Self::Masses,
         Self::Integrals,
         Self::Draws,
         Self::Mis,
@@ -72,6 +75,12 @@ impl Measurement {
         Self::Facets,
         Self::FresnelLaws,
     ];
+
+    /// Whether it reads values of eval. Where no measurement of a case does, eval is not
+    /// called.
+    pub fn reads_eval(self) -> bool {
+        !matches!(self, Self::Masses | Self::Draws | Self::Jacobian)
+    }
 }
 
 /// Everything that was measured of one case. A part that is `None` was not
@@ -148,6 +157,8 @@ pub struct Gatherer<'a> {
     setup: Setup,
     watch: Arc<Watch>,
     pilot: Pilot,
+    /// Where the values are yet to be integrated.
+    integrated: Option<Integrated>,
     evidence: Evidence,
 }
 
@@ -179,7 +190,7 @@ impl<'a> Gatherer<'a> {
             evaluations: Evaluations::default(),
             halts: Vec::new(),
         };
-        Self { meter, setup, watch, pilot: Pilot::default(), evidence }
+        Self { meter, setup, watch, pilot: Pilot::default(), integrated: None, evidence }
     }
 
     /// The evidence so far.
@@ -198,11 +209,12 @@ impl<'a> Gatherer<'a> {
     pub fn prepare(&mut self, asked: &[Measurement], company: &Company, draws: u64) {
         use Measurement as M;
         let (has, kind) = (self.meter.description.has, self.meter.description.kind);
+        let eval = self.setup.eval;
         // The pilot is always drawn: partitions and probes stand on it; and the
         // probe of the cosine's convention must not depend on what is asked for.
         let always = |step| match step {
             M::Samples => has.sample,
-            M::Pairs => has.eval && has.pdf && has.sample && kind == SubjectKind::Bsdf,
+            M::Pairs => eval && has.eval && has.pdf && has.sample && kind == SubjectKind::Bsdf,
             _ => false,
         };
         let order = [
@@ -219,12 +231,7 @@ impl<'a> Gatherer<'a> {
         for step in order {
             if step == M::Corners && self.settle_cosine() {
                 // Under the convention that was found.
-                if let Err(halt) = self.measure(M::Samples, company) {
-                    self.halted(M::Samples, halt);
-                }
-                if let Err(halt) = self.measure(M::Pairs, company) {
-                    self.halted(M::Pairs, halt);
-                }
+                self.identities(company);
             }
             if (asked.contains(&step) || always(step))
                 && let Err(halt) = self.measure(step, company)
@@ -232,12 +239,12 @@ impl<'a> Gatherer<'a> {
                 self.halted(step, halt);
             }
         }
-        if (asked.contains(&M::Integrals) || asked.contains(&M::Draws))
+        if [M::Masses, M::Integrals, M::Draws].iter().any(|step| asked.contains(step))
             && (has.eval || has.pdf || has.sample)
             && !self.is_over()
-            && let Err(halt) = self.integrate(draws)
+            && let Err((step, halt)) = self.integrate(draws)
         {
-            self.halted(M::Integrals, halt);
+            self.halted(step, halt);
         }
         if let (true, false, Some((name, other))) =
             (asked.contains(&M::Reference), self.is_over(), &company.reference)
@@ -246,6 +253,37 @@ impl<'a> Gatherer<'a> {
             self.halted(M::Reference, halt);
         }
         self.account();
+    }
+
+    /// Calls eval where it was spared so far: a failure is to be explained and shown. What
+    /// was judged stays as it is.
+    pub fn complete(&mut self, company: &Company) {
+        if self.setup.eval || self.is_over() {
+            return;
+        }
+        self.setup.eval = true;
+        let pilot = std::mem::take(&mut self.pilot);
+        self.identities(company);
+        if self.settle_cosine() {
+            self.identities(company);
+        }
+        if self.pilot.wi != pilot.wi {
+            // Its random numbers are its own: pdf was integrated by the first.
+            self.pilot = pilot;
+        }
+        if let (false, Err(halt)) = (self.is_over(), self.integrate_values()) {
+            self.halted(Measurement::Integrals, halt);
+        }
+        self.account();
+    }
+
+    /// What holds for each sample and each pair.
+    fn identities(&mut self, company: &Company) {
+        for step in [Measurement::Samples, Measurement::Pairs] {
+            if let Err(halt) = self.measure(step, company) {
+                self.halted(step, halt);
+            }
+        }
     }
 
     /// Draws on to `samples` in this attempt (0 the first, 1 the confirmation).
@@ -345,7 +383,15 @@ impl<'a> Gatherer<'a> {
         other
     }
 
-    fn integrate(&mut self, draws: u64) -> Result<(), Halt> {
+    fn integrate(&mut self, draws: u64) -> Result<(), (Measurement, Halt)> {
+        self.integrate_pdf(draws).map_err(|halt| (Measurement::Masses, halt))?;
+        if self.setup.eval {
+            self.integrate_values().map_err(|halt| (Measurement::Integrals, halt))?;
+        }
+        Ok(())
+    }
+
+    fn integrate_pdf(&mut self, draws: u64) -> Result<(), Halt> {
         let native = self.meter.cells(self.setup.wo)?;
         let breaks = native.as_ref().map(Breaks::new);
         let chart = breaks.as_ref().map_or_else(|| Chart::new(self.setup.wo.phi()), Breaks::chart);
@@ -355,22 +401,42 @@ impl<'a> Gatherer<'a> {
             None => Partition::build(chart, pilot.clone(), LEAVES),
         };
         self.evidence.given = native.map(|native| native.given);
-        let gather = |partition: &Partition| {
-            Integrals::gather(&self.meter, &self.setup, partition, &pilot, draws, MOST_EVALUATIONS)
-        };
-        let mut integrals = gather(&partition)?;
+        let (mut integrals, mut integrated) = self.masses(&partition, &pilot, draws)?;
         let heavy = integrals.heavy_leaves(&partition, &pilot);
         if !pilot.is_empty() && heavy.iter().any(|h| *h) {
             partition = partition.refined(&heavy);
-            integrals = gather(&partition)?;
+            (integrals, integrated) = self.masses(&partition, &pilot, draws)?;
         }
         self.evidence.partition = Some(partition);
         self.evidence.integrals = Some(integrals);
+        self.integrated = Some(integrated);
+        Ok(())
+    }
+
+    fn masses(
+        &self,
+        partition: &Partition,
+        points: &[Point],
+        draws: u64,
+    ) -> Result<(Integrals, Integrated), Halt> {
+        let pilot = (&self.pilot, points);
+        Integrals::masses(&self.meter, &self.setup, partition, pilot, draws, MOST_EVALUATIONS)
+    }
+
+    fn integrate_values(&mut self) -> Result<(), Halt> {
+        let (meter, setup, pilot) = (&self.meter, &self.setup, &self.pilot);
+        if let (Some(partition), Some(integrals), Some(integrated)) =
+            (&self.evidence.partition, &mut self.evidence.integrals, self.integrated.take())
+        {
+            integrals.add_values(meter, setup, partition, pilot, integrated, MOST_EVALUATIONS)?;
+        }
         Ok(())
     }
 
     fn pilot_points(&self, chart: &Chart) -> Vec<Point> {
-        self.pilot.wi.iter().map(|wi| chart.to_point(*wi)).collect()
+        let mut points = Vec::new();
+        chart.to_points(&self.pilot.wi, &mut points);
+        points
     }
 
     fn compare(
@@ -387,10 +453,12 @@ impl<'a> Gatherer<'a> {
             Comparison::gather(&self.meter, &self.setup, &self.pilot, (name, &other), within)?;
         let in_distribution = comparison.table.is_none() && other.description.has.pdf;
         if let (Some(partition), true) = (&self.evidence.partition, in_distribution) {
-            let pilot = self.pilot_points(partition.chart());
+            let points = self.pilot_points(partition.chart());
+            let pilot = (&self.pilot.of_another(), &points[..]);
             let setup = Setup { claims, ..self.setup.clone() };
-            let integrals = Integrals::gather(&other, &setup, partition, &pilot, draws, MOST_EVALUATIONS)?;
-            comparison.unreliable = integrals.reliable().err();
+            let (integrals, _) =
+                Integrals::masses(&other, &setup, partition, pilot, draws, MOST_EVALUATIONS)?;
+            comparison.unreliable = integrals.masses_reliable().err();
             comparison.mass_error = integrals.mass().1;
             comparison.masses = integrals.pdf;
         }
@@ -440,7 +508,8 @@ impl Evidence {
     /// Whether no light leaves at all, by a measured integral and the discrete
     /// lobes met.
     pub fn is_black(&self) -> bool {
-        let dark = |i: &Integrals| (0..i.value_error.len()).all(|c| i.albedo(c).0 == 0.0);
+        let dark =
+            |i: &Integrals| !i.value.is_empty() && (0..i.value_error.len()).all(|c| i.albedo(c).0 == 0.0);
         let discrete = self.draws.iter().flat_map(|d| &d.discrete);
         self.integrals.as_ref().is_some_and(dark) && discrete.flat_map(|d| &d.weight).all(|w| *w == 0.0)
     }

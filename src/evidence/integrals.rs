@@ -2,9 +2,10 @@
 
 use super::draws::CosineDensity;
 use super::meter::{Halt, Meter};
+use super::samples::Pilot;
 use super::setup::Setup;
 use crate::bsdf::Direction;
-use crate::sphere::{Breaks, Cell, Chart, Goal, Marker, Partition, Point, STERADIANS, integrate_within};
+use crate::sphere::{Breaks, Cell, Chart, Goal, Marker, Partition, Patches, Point, STERADIANS, integrate_on};
 use serde::{Deserialize, Serialize};
 
 /// Points of the base grid on each side of a hemisphere's square. A peak of
@@ -34,7 +35,8 @@ pub struct Integrals {
     pub pdf: Vec<f64>,
     /// Errors of these.
     pub pdf_error: Vec<f64>,
-    /// ∫ f·|cos θi| by leaf and channel (row-major).
+    /// ∫ f·|cos θi| by leaf and channel (row-major); this and what follows of f is empty
+    /// or 0 where no check read eval.
     pub value: Vec<f64>,
     /// Errors of the totals of `value`, by channel.
     pub value_error: Vec<f64>,
@@ -48,12 +50,28 @@ pub struct Integrals {
     pub largest_weight: f64,
     /// Largest f·|cos θi|/(pdf + cosine density) met.
     pub largest_balanced: f64,
-    /// Whether the cubature reached its goals.
+    /// Whether the cubature of pdf reached its goals.
     pub converged: bool,
+    /// Whether that of the values did.
+    #[serde(default = "reached")]
+    pub values_converged: bool,
     /// ∫ pdf by randomised points, and its standard error.
     pub cross_check: (f64, f64),
-    /// Directions evaluated.
+    /// Directions at which pdf was evaluated.
     pub evaluations: u64,
+}
+
+/// Evidence of earlier versions tells of both at once.
+fn reached() -> bool {
+    true
+}
+
+/// Where pdf was integrated, from where the values are.
+pub struct Integrated {
+    patches: Patches,
+    markers: Vec<Marker>,
+    /// The directions of the first markers; the pilot's follow.
+    directions: Vec<Direction>,
 }
 
 /// Times its error that a cubature may be off which did not reach its goals.
@@ -69,7 +87,8 @@ impl Integrals {
     /// goals may not be reached, and errors are guesses. `Err` with the reason where
     /// nothing can be told.
     pub fn certainty(&self) -> Result<f64, String> {
-        if self.converged { self.reliable().map(|()| 1.0) } else { self.cross_checked().map(|()| UNSETTLED) }
+        let settled = self.converged && self.values_converged;
+        self.cross_checked().map(|()| if settled { 1.0 } else { UNSETTLED })
     }
 
     /// How far the mass may be off where a relative error of `tolerance` is right.
@@ -84,10 +103,21 @@ impl Integrals {
         (self.value.iter().skip(channel).step_by(channels).sum(), self.value_error[channel])
     }
 
+    /// Whether masses and values may be relied on.
+    pub fn reliable(&self) -> Result<(), String> {
+        self.masses_reliable()?;
+        if self.values_converged {
+            return Ok(());
+        }
+        let totals = (0..self.value_error.len()).map(|c| self.albedo(c));
+        let (value, error) = totals.max_by(|a, b| a.1.total_cmp(&b.1)).unwrap_or_default();
+        Err(format!("integration unreliable here: ∫f|cos θi| = {value:.6} ± {error:.1e}"))
+    }
+
     /// Whether the total mass may be relied on: goals reached, and randomised
     /// points agree with it within ten standard errors and what the tests
     /// tolerate.
-    pub fn reliable(&self) -> Result<(), String> {
+    pub fn masses_reliable(&self) -> Result<(), String> {
         if !self.converged {
             let (mass, error) = self.mass();
             return Err(format!(
@@ -110,41 +140,81 @@ impl Integrals {
         Ok(())
     }
 
-    /// Integrates over the leaves of `partition`. `pilot` are directions that the
-    /// sampler visits, `draws` the number of draws to be compared with, and
-    /// `evaluations` a cap.
-    pub fn gather(
+    /// Integrates pdf over the leaves of `partition`. `pilot` are directions that the
+    /// sampler visits, and their points, `draws` the number of draws to be compared with,
+    /// and `evaluations` a cap. The values are not there yet; what they are integrated
+    /// from on, so that the masses are the same whether they are asked for or not.
+    pub fn masses(
         meter: &Meter,
         setup: &Setup,
         partition: &Partition,
-        pilot: &[Point],
+        (pilot, points): (&Pilot, &[Point]),
         draws: u64,
         evaluations: u64,
-    ) -> Result<Self, Halt> {
-        let channels = meter.channels();
-        let tabulated = meter.description.table.is_some();
+    ) -> Result<(Self, Integrated), Halt> {
         let breaks = meter.cells(setup.wo)?.map(|native| Breaks::new(&native));
         // A cell's neighbour knows nothing of it beyond a jump.
         let reaching = breaks.is_none();
-        let markers = markers(meter, setup, partition, pilot, reaching)?;
-        let goal = Goal {
-            // pdf; f·cos and its square over pdf per channel; lost; two ratios.
-            components: 1 + 2 * channels + 3,
-            controlled: channels,
-            draws,
-            // Steps and kinks of a table let errors fall slowly. These are a tenth and a
-            // half of what masses and means may be off by, and enter what they are judged by.
-            mass: if tabulated { 1e-4 } else { 1e-5 },
-            value: if tabulated { 5e-4 } else { 2e-5 },
-            evaluations,
-            independent: tabulated,
-            horizon: setup.wo.z.abs(),
-        };
-        let cosine = CosineDensity::new(setup);
-        let mut value = Vec::new();
+        let (markers, directions) = markers(meter, setup, partition, (pilot, points), reaching)?;
+        let goal = Goal { draws, evaluations, ..goal(meter, setup, 0) };
+        let patches = Patches::new(breaks.as_ref(), partition, points, &markers, goal.horizon);
         let mut density = Vec::new();
-        let leaf = integrate_within(breaks.as_ref(), partition, pilot, &markers, &goal, |wi, rows| {
-            measure(meter, setup, wi, &mut value, &mut density)?;
+        let (leaf, patches) = integrate_on(patches, partition, points.len(), &markers, &goal, |wi, rows| {
+            densities(meter, setup, wi, &mut density)?;
+            rows.iter_mut().zip(&density).for_each(|(row, p)| *row = p.min(LARGEST));
+            Ok::<_, Halt>(())
+        })?;
+        let integrals = Self {
+            cross_check: cross_check(meter, setup, partition, &leaf.patches)?,
+            pdf: leaf.values,
+            pdf_error: leaf.errors,
+            value: Vec::new(),
+            value_error: Vec::new(),
+            second: Vec::new(),
+            second_error: Vec::new(),
+            lost: 0.0,
+            largest_weight: 0.0,
+            largest_balanced: 0.0,
+            converged: leaf.converged,
+            values_converged: true,
+            evaluations: leaf.evaluations,
+        };
+        Ok((integrals, Integrated { patches, markers, directions }))
+    }
+
+    /// Integrates the values, of which eval tells, on the patches of pdf and below.
+    pub fn add_values(
+        &mut self,
+        meter: &Meter,
+        setup: &Setup,
+        partition: &Partition,
+        pilot: &Pilot,
+        integrated: Integrated,
+        evaluations: u64,
+    ) -> Result<(), Halt> {
+        let channels = meter.channels();
+        let Integrated { patches, mut markers, directions } = integrated;
+        let mut value = Vec::new();
+        values(meter, setup, &directions, &mut value)?;
+        if pilot.value.len() == pilot.wi.len() * channels {
+            value.extend(&pilot.value);
+        } else {
+            let mut drawn = Vec::new();
+            values(meter, setup, &pilot.wi, &mut drawn)?;
+            value.extend(drawn);
+        }
+        let cosines = directions.iter().chain(&pilot.wi).map(|wi| wi.abs_cos_theta());
+        for ((marker, row), cosine) in markers.iter_mut().zip(value.chunks_exact(channels)).zip(cosines) {
+            // pdf has been integrated.
+            (marker.density, marker.value) = (0.0, row.iter().sum::<f64>() * cosine);
+        }
+        let goal = Goal { evaluations, ..goal(meter, setup, channels) };
+        let cosine = CosineDensity::new(setup);
+        let mut density = Vec::new();
+        let patches = patches.without_pilot();
+        let (leaf, _) = integrate_on(patches, partition, 0, &markers, &goal, |wi, rows| {
+            values(meter, setup, wi, &mut value)?;
+            densities(meter, setup, wi, &mut density)?;
             for (k, (wi, row)) in wi.iter().zip(rows.chunks_exact_mut(goal.components)).enumerate() {
                 let p = density[k];
                 row[0] = p.min(LARGEST);
@@ -165,24 +235,16 @@ impl Integrals {
             }
             Ok::<_, Halt>(())
         })?;
-        let pick = |c: usize, from: &[f64]| -> Vec<f64> {
-            from.iter().skip(c).step_by(goal.components).copied().collect()
-        };
         let rows = leaf.values.chunks_exact(goal.components);
-        Ok(Self {
-            pdf: pick(0, &leaf.values),
-            pdf_error: pick(0, &leaf.errors),
-            value: rows.flat_map(|row| row[1..1 + channels].to_vec()).collect(),
-            value_error: (0..channels).map(|c| leaf.total(1 + c).1).collect(),
-            second: (0..channels).map(|c| leaf.total(1 + channels + c).0).collect(),
-            second_error: (0..channels).map(|c| leaf.total(1 + channels + c).1).collect(),
-            lost: leaf.total(1 + 2 * channels).0,
-            largest_weight: leaf.largest[2 + 2 * channels],
-            largest_balanced: leaf.largest[3 + 2 * channels],
-            converged: leaf.converged,
-            cross_check: cross_check(meter, setup, partition, &leaf.patches)?,
-            evaluations: leaf.evaluations,
-        })
+        self.value = rows.flat_map(|row| row[1..1 + channels].to_vec()).collect();
+        self.value_error = (0..channels).map(|c| leaf.total(1 + c).1).collect();
+        self.second = (0..channels).map(|c| leaf.total(1 + channels + c).0).collect();
+        self.second_error = (0..channels).map(|c| leaf.total(1 + channels + c).1).collect();
+        self.lost = leaf.total(1 + 2 * channels).0;
+        self.largest_weight = leaf.largest[2 + 2 * channels];
+        self.largest_balanced = leaf.largest[3 + 2 * channels];
+        self.values_converged = leaf.converged;
+        Ok(())
     }
 
     /// Leaves whose mass is far above what the pilot found there.
@@ -203,27 +265,57 @@ impl Integrals {
     }
 }
 
-/// f (cosine excluded) and pdf at directions.
-fn measure(
+/// What is asked of the cubature of pdf, or with it of that of the values of so many
+/// channels, where pdf's own errors ask for nothing.
+fn goal(meter: &Meter, setup: &Setup, channels: usize) -> Goal {
+    let tabulated = meter.description.table.is_some();
+    Goal {
+        // pdf; f·cos and its square over pdf per channel; lost; two ratios.
+        components: if channels > 0 { 1 + 2 * channels + 3 } else { 1 },
+        controlled: channels,
+        draws: 0,
+        // Steps and kinks of a table let errors fall slowly. These are a tenth and a
+        // half of what masses and means may be off by, and enter what they are judged by.
+        mass: match channels {
+            0 if tabulated => 1e-4,
+            0 => 1e-5,
+            _ => f64::MAX,
+        },
+        value: if tabulated { 5e-4 } else { 2e-5 },
+        evaluations: 0,
+        independent: tabulated,
+        horizon: setup.wo.z.abs(),
+    }
+}
+
+/// f (cosine excluded) at directions; 0 where there is no eval.
+pub(super) fn values(
     meter: &Meter,
     setup: &Setup,
     wi: &[Direction],
     value: &mut Vec<f64>,
-    density: &mut Vec<f64>,
 ) -> Result<(), Halt> {
     if meter.description.has.eval {
-        meter.eval(setup.wo, wi, setup.transport, value)?;
-    } else {
-        value.clear();
-        value.resize(wi.len() * meter.channels(), 0.0);
+        return meter.eval(setup.wo, wi, setup.transport, value);
     }
+    value.clear();
+    value.resize(wi.len() * meter.channels(), 0.0);
+    Ok(())
+}
+
+/// pdf at directions; 0 where there is none.
+pub(super) fn densities(
+    meter: &Meter,
+    setup: &Setup,
+    wi: &[Direction],
+    density: &mut Vec<f64>,
+) -> Result<(), Halt> {
     if meter.description.has.pdf {
-        meter.pdf(setup.wo, wi, setup.transport, density)
-    } else {
-        density.clear();
-        density.resize(wi.len(), 0.0);
-        Ok(())
+        return meter.pdf(setup.wo, wi, setup.transport, density);
     }
+    density.clear();
+    density.resize(wi.len(), 0.0);
+    Ok(())
 }
 
 /// The directions where a lobe is to be expected, whatever the sampler does:
@@ -245,47 +337,53 @@ pub fn refracted(wo: Direction, eta: f64) -> Option<Direction> {
     (z2 > 0.0).then(|| Direction::new(x, y, -z2.sqrt().copysign(wo.z)))
 }
 
-/// What is known of the integrand before it is integrated: at expected
-/// directions, on a base grid, and where the sampler goes (the rim of a narrow
-/// lobe over a wide one is too faint for the pilot's counts, not for the pdf).
+/// What is known of pdf before it is integrated, and at which directions: expected ones,
+/// a base grid, and where the sampler goes (the rim of a narrow lobe over a wide one is
+/// too faint for the pilot's counts, not for the pdf), whose directions the pilot has.
 fn markers(
     meter: &Meter,
     setup: &Setup,
     partition: &Partition,
-    pilot: &[Point],
+    (pilot, points): (&Pilot, &[Point]),
     reaching: bool,
-) -> Result<Vec<Marker>, Halt> {
+) -> Result<(Vec<Marker>, Vec<Direction>), Halt> {
     // Of equal area, whatever the partition's.
     let grid = Chart::new(setup.wo.phi());
     let chart = partition.chart();
     let mut directions = expected_directions(meter, setup)?;
-    directions.extend(pilot.iter().map(|p| chart.to_direction(*p)));
     let step = 1.0 / BASE_GRID as f64;
-    for column in 0..2 * BASE_GRID {
-        for row in 0..BASE_GRID {
-            // Off the middles of dyadic cells, where the rule has its own nodes.
-            let (u, v) = ((column as f64 + 0.382) * step, (row as f64 + 0.618) * step);
-            directions.push(grid.to_direction([u, v]));
-        }
+    // Off the middles of dyadic cells, where the rule has its own nodes.
+    let node = |k: usize| {
+        let (column, row) = ((k / BASE_GRID) as f64, (k % BASE_GRID) as f64);
+        [(column + 0.382) * step, (row + 0.618) * step]
+    };
+    let nodes: Vec<Point> = (0..2 * BASE_GRID * BASE_GRID).map(node).collect();
+    grid.to_directions(&nodes, &mut directions);
+    let mut density = Vec::new();
+    densities(meter, setup, &directions, &mut density)?;
+    let (mut places, mut drawn) = (Vec::new(), Vec::new());
+    chart.to_points(&directions, &mut places);
+    if pilot.pdf.len() != pilot.wi.len() {
+        densities(meter, setup, &pilot.wi, &mut drawn)?;
     }
-    let (mut value, mut density) = (Vec::new(), Vec::new());
-    measure(meter, setup, &directions, &mut value, &mut density)?;
-    let channels = meter.channels();
     // The distance at which the sampler's next point is to be expected.
     let reach = |wi: &Direction, density: f64| {
-        let expected = density * chart.steradians(*wi) * pilot.len().max(1) as f64;
+        let expected = density * chart.steradians(*wi) * points.len().max(1) as f64;
         if reaching { 0.5 / expected.sqrt().max(1e3) } else { 0.0 }
     };
-    Ok(directions
-        .iter()
-        .enumerate()
-        .map(|(k, wi)| Marker {
-            at: chart.to_point(*wi),
-            reach: reach(wi, density[k]),
-            density: density[k],
-            value: value[k * channels..][..channels].iter().sum::<f64>() * wi.abs_cos_theta(),
-        })
-        .collect())
+    let mut markers = Vec::with_capacity(places.len() + points.len());
+    let mut mark = |wi: &[Direction], places: &[Point], density: &[f64]| {
+        let rows = wi.iter().zip(places).zip(density);
+        markers.extend(rows.map(|((wi, at), density)| Marker {
+            at: *at,
+            reach: reach(wi, *density),
+            density: *density,
+            value: 0.0,
+        }));
+    };
+    mark(&directions, &places, &density);
+    mark(&pilot.wi, points, if drawn.is_empty() { &pilot.pdf } else { &drawn });
+    Ok((markers, directions))
 }
 
 /// ∫ pdf once more, by scrambled Sobol points (Burley, "Practical hash-based
@@ -303,14 +401,17 @@ fn cross_check(
     let mut seed = setup.key.with("stage", "cross-check").block(0);
     let mut density = Vec::new();
     let mut totals = Vec::new();
+    let (mut points, mut directions) = (Vec::new(), Vec::new());
     for _ in 0..CROSS_SETS {
         let seed = (seed.next_u64() >> 32) as u32;
-        let mut directions = Vec::with_capacity(patches.len());
-        for (k, cell) in patches.iter().enumerate() {
+        points.clear();
+        directions.clear();
+        points.extend(patches.iter().enumerate().map(|(k, cell)| {
             let index = k as u32 % (1 << 16);
             let [s, t] = [0, 1].map(|d| f64::from(sobol_burley::sample(index, d, seed)));
-            directions.push(partition.chart().to_direction(cell.at(s, t)));
-        }
+            cell.at(s, t)
+        }));
+        partition.chart().to_directions(&points, &mut directions);
         meter.pdf(setup.wo, &directions, setup.transport, &mut density)?;
         let chart = partition.chart();
         let terms = density.iter().zip(patches).zip(&directions);

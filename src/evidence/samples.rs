@@ -2,6 +2,7 @@
 //! the identities that hold for each sample; they are never counted.
 
 use super::draws::{BLOCK, density_near};
+use super::integrals::{densities, values};
 use super::meter::{Halt, Meter};
 use super::setup::Setup;
 use super::tally::{Place, Tally, relative_error};
@@ -36,6 +37,10 @@ impl DiscreteDraw {
 pub struct Pilot {
     /// Continuous samples.
     pub wi: Vec<Direction>,
+    /// pdf there; empty where it was not asked for.
+    pub pdf: Vec<f64>,
+    /// eval there, by channel; likewise.
+    pub value: Vec<f64>,
     /// Discrete samples of different directions.
     pub discrete: Vec<DiscreteDraw>,
     /// Draws in all.
@@ -91,11 +96,9 @@ impl SampleIdentities {
             let wi: Vec<Direction> = rows.iter().map(|k| samples.wi[*k]).collect();
             found.valid += samples.lobe.iter().filter(|lobe| lobe.is_valid()).count() as u64;
             pilot.add_discrete(&samples);
-            if has.pdf {
-                meter.pdf(setup.wo, &wi, setup.transport, &mut density)?;
-            }
-            if has.eval {
-                meter.eval(setup.wo, &wi, setup.transport, &mut value)?;
+            densities(meter, setup, &wi, &mut density)?;
+            if setup.eval {
+                values(meter, setup, &wi, &mut value)?;
             }
             for (row, &k) in rows.iter().enumerate() {
                 let wi = samples.wi[k];
@@ -122,7 +125,7 @@ impl SampleIdentities {
                 found.returned_pdf.look(relative_error(told, p, setup.floor()), || {
                     place().value("sample.pdf", told).value("pdf", p)
                 });
-                if !has.eval {
+                if !(has.eval && setup.eval) {
                     continue;
                 }
                 let cosine = wi.abs_cos_theta();
@@ -151,6 +154,8 @@ impl SampleIdentities {
                 found.weight_other.look(worst_other, place);
             }
             pilot.wi.extend(wi);
+            pilot.pdf.extend(&density);
+            pilot.value.extend(&value);
         }
         pilot.drawn = found.drawn;
         found.repeated = pilot.most_repeated();
@@ -176,6 +181,11 @@ fn contradicts_side(lobe: Lobe, wo: Direction, wi: Direction) -> bool {
 }
 
 impl Pilot {
+    /// The same directions, of whose functions nothing is known.
+    pub fn of_another(&self) -> Self {
+        Self { pdf: Vec::new(), value: Vec::new(), ..self.clone() }
+    }
+
     fn add_discrete(&mut self, samples: &Samples) {
         for k in (0..samples.len()).filter(|k| samples.lobe[*k].is_discrete()) {
             let (wi, lobe, probability) = (samples.wi[k], samples.lobe[k], samples.pdf[k]);
@@ -233,7 +243,7 @@ fn discrete_value(meter: &Meter, setup: &Setup, pilot: &Pilot) -> Result<Tally, 
             meter.pdf(setup.wo, &[draw.wi, beside], setup.transport, &mut there)?;
             look("pdf", 1, &there);
         }
-        if meter.description.has.eval {
+        if meter.description.has.eval && setup.eval {
             meter.eval(setup.wo, &[draw.wi, beside], setup.transport, &mut there)?;
             look("eval", meter.channels(), &there);
         }

@@ -16,6 +16,8 @@ pub struct Setup {
     pub claims: Claims,
     /// Random numbers are keyed by this and the stage of the measurement.
     pub key: StreamKey,
+    /// Whether eval is called: some check of the case reads its values.
+    pub eval: bool,
     /// Whether multiple importance sampling is tried along with the draws.
     pub mis: bool,
 }

@@ -70,7 +70,7 @@ pub fn transmitted(cos_i: f64, cos_t: f64, eta: f64) -> f64 {
 }
 
 /// Reflectance of a conductor of complex index n + ik seen from vacuum.
-#[inline]
+#[inline(always)]
 pub fn conductor(cos_i: f64, n: f64, k: f64) -> f64 {
     let [s, p] = conductor_polarised(cos_i, n, k);
     0.5 * (s + p)
@@ -78,21 +78,19 @@ pub fn conductor(cos_i: f64, n: f64, k: f64) -> f64 {
 
 /// As [`conductor`], of light polarised perpendicular to the plane of incidence
 /// (s) and parallel to it (p).
-#[inline]
+#[inline(always)]
 pub fn conductor_polarised(cos_i: f64, n: f64, k: f64) -> [f64; 2] {
     let cos2 = cos_i * cos_i;
     let sin2 = 1.0 - cos2;
     // a + ib is the square root of (n + ik)² − sin²θ; ab = nk gives the
     // smaller of the two without cancellation.
     let re = (n - k) * (n + k) - sin2;
-    let modulus = re.hypot(2.0 * n * k);
-    let (a, b) = if re < 0.0 {
-        let b = (0.5 * (modulus - re)).sqrt();
-        (n * k / b, b)
-    } else {
-        let a = (0.5 * (modulus + re)).sqrt();
-        (a, if a > 0.0 { n * k / a } else { 0.0 })
-    };
+    // No index is so large or small that squares leave f64.
+    let im = 2.0 * n * k;
+    let modulus = (re * re + im * im).sqrt();
+    let larger = (0.5 * (modulus + re.abs())).sqrt();
+    let smaller = if larger > 0.0 { n * k / larger } else { 0.0 };
+    let (a, b) = if re < 0.0 { (smaller, larger) } else { (larger, smaller) };
     let b2 = b * b;
     let s = ((a - cos_i).powi(2) + b2) / ((a + cos_i).powi(2) + b2);
     let q = a * cos_i;

@@ -2,7 +2,7 @@
 
 use super::breaks::{Breaks, clipped, cuts};
 use super::chart::Point;
-use super::cubature::{Patch, cut};
+use super::cubature::{Marker, Patch, cut};
 use super::partition::{Cell, EMPTY_DEPTH, NARROWEST, Partition, partition_points};
 
 impl Partition {
@@ -66,7 +66,12 @@ impl Partition {
 }
 
 /// The leaves' patches cut until each lies in one of `cells`.
-pub(super) fn within(partition: &Partition, cells: &[Cell], of_leaf: Vec<Patch>) -> Vec<Patch> {
+pub(super) fn within(
+    partition: &Partition,
+    cells: &[Cell],
+    of_leaf: Vec<Patch>,
+    markers: &[Marker],
+) -> Vec<Patch> {
     // The cells of each leaf, found on the way down the tree.
     let mut cells_of: Vec<Vec<Cell>> = vec![Vec::new(); partition.len()];
     let mut open = vec![(0, clipped(cells, &partition.node_cell(0)))];
@@ -100,7 +105,7 @@ pub(super) fn within(partition: &Partition, cells: &[Cell], of_leaf: Vec<Patch>)
             single.push(patch);
             continue;
         };
-        for half in cut(patch, axis, at) {
+        for half in cut(patch, markers, axis, at) {
             let inside = clipped(&cells, &half.cell);
             open.push((half, inside));
         }
@@ -110,7 +115,7 @@ pub(super) fn within(partition: &Partition, cells: &[Cell], of_leaf: Vec<Patch>)
 
 #[cfg(test)]
 mod tests {
-    use super::super::cubature::{Goal, integrate_within};
+    use super::super::cubature::{Goal, Patches, integrate_on};
     use super::*;
     use crate::bsdf::{Direction, NativeCells, Projection, Rectangle};
     use crate::statistics::streams::{Stream, StreamKey};
@@ -187,7 +192,8 @@ mod tests {
                 independent: false,
                 horizon: 0.0,
             };
-            let result = integrate_within(Some(&breaks), &tree, &[], &[], &goal, |wi, out| {
+            let patches = Patches::new(Some(&breaks), &tree, &[], &[], 0.0);
+            let (result, _) = integrate_on(patches, &tree, 0, &[], &goal, |wi, out| {
                 wi.iter().zip(out).for_each(|(wi, out)| *out = value(*wi) * wi.abs_cos_theta());
                 Ok::<_, ()>(())
             })

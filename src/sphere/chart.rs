@@ -1,9 +1,10 @@
 //! The maps between directions and a rectangle.
 
+use super::octants::{octants, sin_cos_octants};
 use super::partition::Cell;
 use crate::bsdf::Direction;
 use serde::{Deserialize, Serialize};
-use std::f64::consts::{FRAC_PI_4, PI};
+use std::f64::consts::PI;
 
 /// A point of the rectangle [0,2]×[0,1]: the front hemisphere is x in [0,1),
 /// the back one x in [1,2].
@@ -154,8 +155,21 @@ impl Chart {
         pulp::Arch::new().dispatch(Many { chart, directions, points });
     }
 
+    /// Appends the directions of many points, as [`to_points`](Self::to_points) does the
+    /// other way.
+    pub fn to_directions(&self, points: &[Point], directions: &mut Vec<Direction>) {
+        if self.shape != Shape::EqualArea {
+            directions.extend(points.iter().map(|p| self.to_direction(*p)));
+            return;
+        }
+        let chart = self.shaped(Shape::EqualArea);
+        let from = directions.len();
+        directions.resize(from + points.len(), Direction::default());
+        pulp::Arch::new().dispatch(Back { chart, points, directions: &mut directions[from..] });
+    }
+
     /// The unit direction of a point.
-    #[inline]
+    #[inline(always)]
     pub fn to_direction(&self, [u, v]: Point) -> Direction {
         let (u, side) = if u < 1.0 { (u, 1.0) } else { (u - 1.0, -1.0) };
         if self.shape == Shape::ProjectedCylindrical {
@@ -167,7 +181,7 @@ impl Chart {
         let along_x = a.abs() >= b.abs();
         let (major, minor) = if along_x { (a, b) } else { (b, a) };
         let ratio = if major == 0.0 { 0.0 } else { minor / major };
-        let (sin, cos) = (FRAC_PI_4 * ratio).sin_cos();
+        let (sin, cos) = sin_cos_octants(ratio);
         let (x, y) = if along_x { (major * cos, major * sin) } else { (major * sin, major * cos) };
         if self.shape == Shape::ProjectedConcentric {
             return self.turned_back(x, y, side * ((1.0 - major) * (1.0 + major)).max(0.0).sqrt());
@@ -240,6 +254,37 @@ impl pulp::NullaryFnOnce for Many<'_> {
     }
 }
 
+/// Arguments of [`Chart::to_directions`].
+struct Back<'a> {
+    chart: Chart,
+    points: &'a [Point],
+    directions: &'a mut [Direction],
+}
+
+impl pulp::NullaryFnOnce for Back<'_> {
+    type Output = ();
+
+    #[inline(always)]
+    fn call(self) {
+        let (many, rest) = self.points.as_chunks::<8>();
+        let (to_many, to_rest) = self.directions.as_chunks_mut::<8>();
+        for (p, d) in many.iter().zip(to_many) {
+            let u: [f64; 8] = std::array::from_fn(|k| p[k][0]);
+            let v: [f64; 8] = std::array::from_fn(|k| p[k][1]);
+            let (mut x, mut y, mut z) = ([0.0; 8], [0.0; 8], [0.0; 8]);
+            for k in 0..8 {
+                Direction { x: x[k], y: y[k], z: z[k] } = self.chart.to_direction([u[k], v[k]]);
+            }
+            for k in 0..8 {
+                d[k] = Direction::new(x[k], y[k], z[k]);
+            }
+        }
+        for (p, d) in rest.iter().zip(to_rest) {
+            *d = self.chart.to_direction(*p);
+        }
+    }
+}
+
 fn cylindrical_point(x: f64, y: f64, z: f64) -> Point {
     let turns = y.atan2(x) / (2.0 * PI);
     // A tiny negative angle rounds to a whole turn.
@@ -254,41 +299,6 @@ fn corner(x: f64, y: f64) -> f64 {
     let (less, more) = if x.abs() < y.abs() { (x.abs(), y.abs()) } else { (y.abs(), x.abs()) };
     let (less, more) = (less.min(1.0), more.min(1.0));
     sign * (2.0 * (1.0 - ((1.0 - less) * (1.0 + less)).sqrt()) + less * (more.asin() - less.asin()))
-}
-
-/// (4/π) arctan(√t)/√t on 0 ≤ t ≤ tan²(π/8), interpolated at 12 Chebyshev nodes in
-/// 50 digits; its error there is 1.6e-18.
-const OCTANT: [f64; 12] = [
-    1.2732395447351628,
-    -0.42441318157838487,
-    0.2546479089462799,
-    -0.18189136345129195,
-    0.1414710558636348,
-    -0.11574889314407025,
-    0.09793816295200183,
-    -0.08483533733777557,
-    0.07444476661415464,
-    -0.06410891559538259,
-    0.04833886711631351,
-    -0.022670535831656992,
-];
-
-/// (4/π) arctan(minor/major) for 0 ≤ minor ≤ major; 0 where both are 0. Without a
-/// call or a branch, since it is half of the cost of finding a cell.
-#[inline(always)]
-pub fn octants(minor: f64, major: f64) -> f64 {
-    // tan(π/8); beyond it arctan(s) = π/4 − arctan((1−s)/(1+s)).
-    let beyond = minor > (std::f64::consts::SQRT_2 - 1.0) * major;
-    let numerator = if beyond { minor - major } else { minor };
-    let denominator = if beyond { minor + major } else { major };
-    let s = numerator / denominator.max(f64::MIN_POSITIVE);
-    let t = s * s;
-    let t2 = t * t;
-    let t4 = t2 * t2;
-    let pair = |k: usize| OCTANT[k] + OCTANT[k + 1] * t;
-    let quad = |k: usize| pair(k) + pair(k + 2) * t2;
-    let polynomial = quad(0) + (quad(4) + quad(8) * t4) * t4;
-    (if beyond { 1.0 } else { 0.0 }) + s * polynomial
 }
 
 #[cfg(test)]
@@ -322,6 +332,10 @@ mod tests {
             chart.to_points(&directions, &mut points);
             let each: Vec<_> = directions.iter().map(|d| chart.to_point(*d)).collect();
             assert_eq!(points, each);
+            let mut back = vec![Direction::NORMAL];
+            chart.to_directions(&points, &mut back);
+            let each = points.iter().map(|p| chart.to_direction(*p));
+            assert_eq!(back, std::iter::once(Direction::NORMAL).chain(each).collect::<Vec<_>>());
         }
     }
 
@@ -386,15 +400,6 @@ mod tests {
             let back = Cell { lo: [1.0, 0.0], hi: [2.0, 1.0] };
             assert!((chart.solid_angle(&back) - 2.0 * PI).abs() < 1e-14);
         }
-    }
-
-    #[test]
-    fn octants_are_arctangents() {
-        for k in 0..=10_000 {
-            let s = f64::from(k) * 1e-4;
-            assert!((octants(s * 3.0, 3.0) - s.atan() / FRAC_PI_4).abs() < 4.5e-16, "{s}");
-        }
-        assert_eq!(octants(0.0, 0.0), 0.0);
     }
 
     #[test]

@@ -137,7 +137,8 @@ pub(super) struct Patch {
     suspicion: u32,
     axis: u8,
     pilot: Vec<Point>,
-    markers: Vec<Marker>,
+    /// Numbers of the markers that reach it.
+    markers: Vec<u32>,
     /// Largest pdf, and largest sum of controlled values, at its nodes.
     seen: [f64; 2],
 }
@@ -160,32 +161,58 @@ pub fn integrate<E>(
     goal: &Goal,
     f: impl FnMut(&[Direction], &mut [f64]) -> Result<(), E>,
 ) -> Result<LeafIntegrals, E> {
-    integrate_within(None, partition, pilot, markers, goal, f)
+    let patches = Patches::new(None, partition, pilot, markers, goal.horizon);
+    integrate_on(patches, partition, pilot.len(), markers, goal, f).map(|(integrals, _)| integrals)
 }
 
-/// As [`integrate`], of a function with jumps: patches lie within the cells of
-/// `breaks`, where they are those of the partition's chart.
-pub fn integrate_within<E>(
-    breaks: Option<&Breaks>,
+/// The patches that a cubature ended with, from where that of another function goes on.
+pub struct Patches(Vec<Patch>);
+
+impl Patches {
+    /// The leaves of `partition`, graded towards the pilot points and the horizon; of a
+    /// function with jumps cut along the cells of `breaks`, where they are those of the
+    /// partition's chart.
+    pub fn new(
+        breaks: Option<&Breaks>,
+        partition: &Partition,
+        pilot: &[Point],
+        markers: &[Marker],
+        horizon: f64,
+    ) -> Self {
+        let cells = breaks.filter(|b| b.chart() == *partition.chart()).map_or(&[][..], Breaks::cells);
+        Self(first_patches(partition, cells, pilot, markers, horizon))
+    }
+
+    /// The same, whatever the pilot found: its counts say nothing of the next function.
+    pub fn without_pilot(mut self) -> Self {
+        self.0.iter_mut().for_each(|patch| patch.pilot.clear());
+        self
+    }
+}
+
+/// As [`integrate`], from `patches` on, which hold the points of a pilot of `pilot_size`
+/// and the numbers of `markers`; with the patches that it ends with.
+pub fn integrate_on<E>(
+    patches: Patches,
     partition: &Partition,
-    pilot: &[Point],
+    pilot_size: usize,
     markers: &[Marker],
     goal: &Goal,
     mut f: impl FnMut(&[Direction], &mut [f64]) -> Result<(), E>,
-) -> Result<LeafIntegrals, E> {
-    let cells = breaks.filter(|b| b.chart() == *partition.chart()).map_or(&[][..], Breaks::cells);
-    let mut todo = first_patches(partition, cells, pilot, markers, goal.horizon);
+) -> Result<(LeafIntegrals, Patches), E> {
+    let Patches(mut todo) = patches;
+    todo.iter_mut().for_each(|patch| patch.seen = [0.0; 2]);
     let mut done: Vec<Patch> = Vec::new();
     // Values and errors of `done`, `components` each.
     let (mut values, mut errors): (Vec<f64>, Vec<f64>) = Default::default();
     let mut largest = vec![0.0; goal.components];
     let mut evaluations = 0;
-    let pilot_size = pilot.len() as f64;
+    let pilot_size = pilot_size as f64;
     loop {
         evaluations += (todo.len() * NODES) as u64;
         evaluate(partition, &mut todo, goal, &mut f, &mut values, &mut errors, &mut largest)?;
         done.append(&mut todo);
-        let mut split = to_split(&done, &values, &errors, partition, goal, pilot_size);
+        let mut split = to_split(&done, markers, &values, &errors, partition, goal, pilot_size);
         if 2 * evaluations >= goal.evaluations {
             // The rest is for what must be reached.
             split.iter_mut().filter(|s| **s == Split::Wanted).for_each(|s| *s = Split::No);
@@ -218,7 +245,7 @@ pub fn integrate_within<E>(
             for (error, squares) in result.errors.iter_mut().zip(squares) {
                 *error = goal.sum_of(*error, squares);
             }
-            return Ok(result);
+            return Ok((result, Patches(done)));
         }
         // Patches that stay move forward; the others are halved.
         let mut kept = 0;
@@ -226,7 +253,7 @@ pub fn integrate_within<E>(
         for (k, patch) in done.drain(..).enumerate() {
             if split[k] != Split::No {
                 let suspicion = u32::from(split[k] == Split::Suspected);
-                todo.extend(halve(Patch { suspicion: patch.suspicion + suspicion, ..patch }));
+                todo.extend(halve(Patch { suspicion: patch.suspicion + suspicion, ..patch }, markers));
                 continue;
             }
             let (from, to) = (k * goal.components, kept * goal.components);
@@ -267,10 +294,23 @@ fn first_patches(
     for (p, leaf) in pilot.iter().zip(leaves) {
         of_leaf[leaf as usize].pilot.push(*p);
     }
-    let corners: Vec<Point> = markers.iter().flat_map(Marker::corners).collect();
+    // Most lie in one leaf with all that they reach.
+    let places: Vec<Point> = markers.iter().map(|m| m.at).collect();
+    let mut leaves = Vec::new();
+    partition.locate_all(&places, &mut leaves);
+    let mut across: Vec<u32> = Vec::new();
+    for (k, (marker, leaf)) in markers.iter().zip(leaves).enumerate() {
+        let of_leaf = &mut of_leaf[leaf as usize];
+        if (0..2).all(|axis| of_leaf.cell.holds(axis, marker.at[axis], marker.reach)) {
+            of_leaf.markers.push(k as u32);
+        } else {
+            across.push(k as u32);
+        }
+    }
+    let corners: Vec<Point> = across.iter().flat_map(|m| markers[*m as usize].corners()).collect();
     let mut leaves = Vec::new();
     partition.locate_all(&corners, &mut leaves);
-    for (marker, leaves) in markers.iter().zip(leaves.as_chunks_mut::<4>().0) {
+    for (marker, leaves) in across.iter().zip(leaves.as_chunks_mut::<4>().0) {
         leaves.sort_unstable();
         for (k, leaf) in leaves.iter().enumerate() {
             if k == 0 || *leaf != leaves[k - 1] {
@@ -279,13 +319,13 @@ fn first_patches(
         }
     }
     let mut graded = Vec::with_capacity(of_leaf.len());
-    let mut open = if cells.is_empty() { of_leaf } else { within(partition, cells, of_leaf) };
+    let mut open = if cells.is_empty() { of_leaf } else { within(partition, cells, of_leaf, markers) };
     while let Some(mut patch) = open.pop() {
         let axis = unfilled_axis(&patch).or_else(|| axis_to_horizon(partition.chart(), &patch.cell, horizon));
         match axis {
             Some(axis) if patch.depth < DEEPEST => {
                 patch.axis = axis;
-                open.extend(halve(patch));
+                open.extend(halve(patch, markers));
             }
             _ => graded.push(patch),
         }
@@ -313,42 +353,55 @@ fn unfilled_axis(patch: &Patch) -> Option<u8> {
     if points < TELLING {
         return None;
     }
-    let sorted = [0, 1].map(|axis| {
-        let mut at: Vec<f64> = patch.pilot.iter().map(|p| p[axis]).collect();
-        at.sort_unstable_by(f64::total_cmp);
-        at
-    });
-    // The shortest that holds `share` points, as a part of the patch.
-    let span = |axis: usize, share: usize| {
-        let at = &sorted[axis];
-        let spans = at.iter().zip(&at[share - 1..]).map(|(a, b)| b - a);
-        spans.fold(f64::INFINITY, f64::min) / patch.cell.width(axis)
-    };
-    let least = |share: usize, fill: f64| {
-        let spans = [span(0, share), span(1, share)];
+    let least = |spans: [f64; 2], fill: f64| {
         let axis = usize::from(spans[1] < spans[0]);
         (spans[axis] < fill).then_some(axis as u8)
     };
-    least(points, FILL).or_else(|| least(points.div_ceil(2), CROWDED))
+    let whole = [0, 1].map(|axis| {
+        let ends = patch.pilot.iter().map(|p| (p[axis], p[axis]));
+        let (lo, hi) = ends.fold((f64::INFINITY, f64::NEG_INFINITY), |a, b| (a.0.min(b.0), a.1.max(b.1)));
+        (hi - lo) / patch.cell.width(axis)
+    });
+    least(whole, FILL).or_else(|| least([0, 1].map(|axis| crowd(patch, axis)), CROWDED))
+}
+
+/// The shortest part of an axis that holds half of the pilot points; infinite where it
+/// is surely not shorter than [`CROWDED`].
+fn crowd(patch: &Patch, axis: usize) -> f64 {
+    // What is no longer than a bin lies in one or two neighbours.
+    const BINS: usize = 1 + (1.0 / CROWDED) as usize;
+    let (half, width) = (patch.pilot.len().div_ceil(2), patch.cell.width(axis));
+    let mut bins = [0usize; BINS];
+    for p in &patch.pilot {
+        bins[((p[axis] - patch.cell.lo[axis]) / (width * CROWDED)) as usize % BINS] += 1;
+    }
+    if bins.windows(2).all(|pair| pair[0] + pair[1] < half) {
+        return f64::INFINITY;
+    }
+    let mut at: Vec<f64> = patch.pilot.iter().map(|p| p[axis]).collect();
+    at.sort_unstable_by(f64::total_cmp);
+    let spans = at.iter().zip(&at[half - 1..]).map(|(a, b)| b - a);
+    spans.fold(f64::INFINITY, f64::min) / width
 }
 
 /// Both halves of a patch across its axis, one deeper.
-fn halve(patch: Patch) -> [Patch; 2] {
+fn halve(patch: Patch, markers: &[Marker]) -> [Patch; 2] {
     let axis = usize::from(patch.axis);
     let at = patch.cell.middle(axis);
-    cut(Patch { depth: patch.depth + 1, ..patch }, axis, at)
+    cut(Patch { depth: patch.depth + 1, ..patch }, markers, axis, at)
 }
 
 /// Both parts of a patch, cut at `at` across `axis`.
-pub(super) fn cut(patch: Patch, axis: usize, at: f64) -> [Patch; 2] {
+pub(super) fn cut(patch: Patch, markers: &[Marker], axis: usize, at: f64) -> [Patch; 2] {
     let (left_pilot, right_pilot) = patch.pilot.into_iter().partition(|p| p[axis] < at);
     let (mut left_markers, mut right_markers) = (Vec::new(), Vec::new());
-    for m in patch.markers {
+    for k in patch.markers {
+        let m = &markers[k as usize];
         if m.at[axis] - m.reach < at {
-            left_markers.push(m);
+            left_markers.push(k);
         }
         if m.at[axis] + m.reach >= at {
-            right_markers.push(m);
+            right_markers.push(k);
         }
     }
     let [left, right] = patch.cell.split(axis, at);
@@ -377,14 +430,16 @@ fn evaluate<E>(
 ) -> Result<(), E> {
     let rule = Rule::new();
     let chart = partition.chart();
-    let mut directions = Vec::new();
+    let (mut points, mut directions) = (Vec::new(), Vec::new());
     let mut rows = Vec::new();
     // 256 patches are 4352 directions: enough for any transport.
     for patches in todo.chunks_mut(256) {
-        directions.clear();
+        points.clear();
         for patch in patches.iter() {
-            directions.extend(rule.points().iter().map(|&[s, t]| chart.to_direction(patch.cell.at(s, t))));
+            points.extend(rule.points().iter().map(|&[s, t]| patch.cell.at(s, t)));
         }
+        directions.clear();
+        chart.to_directions(&points, &mut directions);
         rows.clear();
         rows.resize(directions.len() * goal.components, 0.0);
         f(&directions, &mut rows)?;
@@ -436,6 +491,7 @@ enum Split {
 /// Which patches are to be halved.
 fn to_split(
     patches: &[Patch],
+    markers: &[Marker],
     values: &[f64],
     errors: &[f64],
     partition: &Partition,
@@ -488,7 +544,7 @@ fn to_split(
             let (by_mass, by_value) = (off(0), (1..steering).any(off));
             let solid_angle =
                 if patch.markers.is_empty() { 0.0 } else { partition.chart().solid_angle(&patch.cell) };
-            let by_marker = patch.markers.iter().any(|m| {
+            let by_marker = patch.markers.iter().map(|m| &markers[*m as usize]).any(|m| {
                 (m.density > 3.0 * patch.seen[0] && m.density * solid_angle > allowed(0))
                     || (m.value > 3.0 * patch.seen[1]
                         && m.value * solid_angle > (1..steering).map(allowed).sum())
@@ -511,193 +567,5 @@ fn to_split(
 }
 
 #[cfg(test)]
-mod tests {
-    use super::super::chart::STERADIANS;
-    use super::*;
-    use std::f64::consts::PI;
-
-    fn goal(components: usize) -> Goal {
-        Goal {
-            components,
-            controlled: components - 1,
-            draws: 1 << 20,
-            mass: 1e-6,
-            value: 1e-6,
-            evaluations: 1 << 20,
-            independent: false,
-            horizon: 0.0,
-        }
-    }
-
-    fn run(pilot: Vec<Point>, markers: &[Marker], f: impl Fn(Direction) -> f64) -> LeafIntegrals {
-        let partition = Partition::build(Chart::new(0.0), pilot.clone(), 1024);
-        integrate(&partition, &pilot, markers, &goal(1), |wi, out| {
-            for (wi, out) in wi.iter().zip(out) {
-                *out = f(*wi);
-            }
-            Ok::<_, ()>(())
-        })
-        .unwrap()
-    }
-
-    /// A von Mises–Fisher lobe, whose integral over the sphere is exactly 1.
-    fn von_mises_fisher(kappa: f64, axis: Direction) -> impl Fn(Direction) -> f64 {
-        move |wi| {
-            // 1 − cos = |wi − axis|²/2 without cancellation.
-            let d = wi - axis;
-            kappa / (2.0 * PI * (1.0 - (-2.0 * kappa).exp())) * (-kappa * 0.5 * d.dot(d)).exp()
-        }
-    }
-
-    #[test]
-    fn integrates_smooth_functions_without_a_pilot() {
-        let cases: [(&dyn Fn(Direction) -> f64, f64); 4] = [
-            (&|_| 1.0, 4.0 * PI),
-            (&|wi| wi.z.max(0.0), PI),
-            (&|wi| wi.x * wi.x, 4.0 * PI / 3.0),
-            (&von_mises_fisher(5.0, Direction::from_angles(0.6, 2.0)), 1.0),
-        ];
-        for (f, exact) in cases {
-            let result = run(vec![], &[], f);
-            let (total, error) = result.total(0);
-            assert!(result.converged);
-            assert!((total - exact).abs() <= 1e-6 * exact, "{total} for {exact}");
-            assert!((total - exact).abs() <= error + 1e-12);
-        }
-    }
-
-    #[test]
-    fn finds_a_narrow_lobe_by_its_pilot() {
-        for kappa in [1e2, 1e4, 1e6, 1e8] {
-            let axis = Direction::from_angles(1.0, 2.0);
-            let chart = Chart::new(0.0);
-            // Points of a Fibonacci spiral about the axis with the lobe's own spread.
-            let (t, b) = (axis.cross(Direction::NORMAL).normalized(), axis);
-            let s = b.cross(t);
-            let pilot: Vec<_> = (0..1 << 15)
-                .map(|k| {
-                    let u = (f64::from(k) + 0.5) / f64::from(1 << 15);
-                    let r = (-2.0 * (1.0 - u).ln() / kappa).sqrt();
-                    let (sin, cos) = (2.399_963 * f64::from(k)).sin_cos();
-                    chart.to_point((axis + t * (r * cos) + s * (r * sin)).normalized())
-                })
-                .collect();
-            let result = run(pilot, &[], von_mises_fisher(kappa, axis));
-            let (total, _) = result.total(0);
-            assert!(result.converged, "kappa {kappa}");
-            assert!((total - 1.0).abs() < 1e-6, "kappa {kappa}: {total}");
-            assert!(result.evaluations < 120_000, "kappa {kappa}: {}", result.evaluations);
-        }
-    }
-
-    /// The trap: without pilot or marker the rule misses the lobe and is sure
-    /// of it; a marker brings it back.
-    #[test]
-    fn finds_a_narrow_lobe_by_a_marker() {
-        let axis = Direction::from_angles(1.0, 2.0);
-        let f = von_mises_fisher(1e8, axis);
-        assert!(run(vec![], &[], &f).total(0).0 < 0.1);
-        let marker = Marker { at: Chart::new(0.0).to_point(axis), reach: 0.0, density: f(axis), value: 0.0 };
-        let (total, _) = run(vec![], &[marker], &f).total(0);
-        // Patches beside the lobe may miss the outermost of its tail.
-        assert!((total - 1.0).abs() < 1e-5, "{total}");
-    }
-
-    /// A few points that fill the cell do not hide the crowd of the others.
-    #[test]
-    fn finds_a_narrow_lobe_in_a_cell_that_other_points_fill() {
-        let chart = Chart::new(0.0);
-        let f = von_mises_fisher(1e8, Direction::from_angles(1.0, 2.0));
-        let at = |theta, phi| chart.to_point(Direction::from_angles(theta, phi));
-        let crowd = (0..20).map(|k| 1e-5 * (f64::from(k) - 9.5)).map(|x| at(1.0 + x, 2.0 - x));
-        let others =
-            (0..8).map(|k| (0.6 * f64::from(k)).sin_cos()).map(|(s, c)| at(1.0 + 0.04 * s, 2.0 + 0.04 * c));
-        let pilot: Vec<Point> = crowd.chain(others).collect();
-        let partition = Partition::build(chart, vec![], 1);
-        let lobe = |wi: &[Direction], out: &mut [f64]| {
-            wi.iter().zip(out).for_each(|(wi, out)| *out = f(*wi));
-            Ok::<_, ()>(())
-        };
-        let (total, _) = integrate(&partition, &pilot, &[], &goal(1), lobe).unwrap().total(0);
-        assert!((total - 1.0).abs() < 1e-4, "{total}");
-    }
-
-    /// The rim of a narrow lobe over a wide one lies in leaves that the wide one's
-    /// points fill; a marker at each point brings it back.
-    #[test]
-    fn keeps_the_rim_of_a_narrow_lobe_over_a_wide_one() {
-        let axis = Direction::from_angles(0.5, 0.3);
-        let chart = Chart::new(0.0);
-        let (kappa, share) = (1e5, 0.8);
-        let narrow = von_mises_fisher(kappa, axis);
-        let f = |wi: Direction| share * wi.z.max(0.0) / PI + (1.0 - share) * narrow(wi);
-        let t = axis.cross(Direction::NORMAL).normalized();
-        let s = axis.cross(t);
-        let n = 1 << 15;
-        let wi: Vec<_> = (0..n)
-            .map(|k| {
-                let u = (f64::from(k) * 0.754_877_666).fract();
-                let (sin, cos) = (2.399_963 * f64::from(k)).sin_cos();
-                if (f64::from(k) * 0.569_840_291).fract() < share {
-                    return Direction::new(u.sqrt() * cos, u.sqrt() * sin, (1.0 - u).sqrt());
-                }
-                let r = (-2.0 * (1.0 - u).ln() / kappa).sqrt();
-                (axis + t * (r * cos) + s * (r * sin)).normalized()
-            })
-            .collect();
-        let pilot: Vec<_> = wi.iter().map(|wi| chart.to_point(*wi)).collect();
-        let markers: Vec<_> = wi
-            .iter()
-            .zip(&pilot)
-            .map(|(wi, at)| {
-                let density = f(*wi);
-                let reach = 0.5 / (density * STERADIANS * f64::from(n)).sqrt();
-                Marker { at: *at, reach, density, value: 0.0 }
-            })
-            .collect();
-        let without = run(pilot.clone(), &[], f).total(0).0;
-        let with = run(pilot, &markers, f).total(0).0;
-        assert!((without - 1.0).abs() > 2e-4, "{without}");
-        assert!((with - 1.0).abs() < 1e-6, "{with}");
-    }
-
-    /// A layer at the horizon that no node of the leaves meets: f = min(cos θ/c, 1) has
-    /// the integral 2π (1 − c/2).
-    #[test]
-    fn finds_what_changes_at_the_horizon_only() {
-        let partition = Partition::build(Chart::new(0.0), vec![], 1024);
-        for c in [1e-2, 1e-3, 1e-4] {
-            let total = |horizon| {
-                let goal = Goal { horizon, ..goal(1) };
-                let layer = |wi: &[Direction], out: &mut [f64]| {
-                    wi.iter().zip(out).for_each(|(wi, out)| *out = (wi.z / c).clamp(0.0, 1.0));
-                    Ok::<_, ()>(())
-                };
-                integrate(&partition, &[], &[], &goal, layer).unwrap().total(0).0 / (2.0 * PI)
-            };
-            assert!((total(0.0) - 1.0).abs() < 0.1 * c, "{}", total(0.0));
-            assert!((total(c) - (1.0 - 0.5 * c)).abs() < 2e-6, "{c}: {}", total(c));
-        }
-    }
-
-    #[test]
-    fn says_when_it_gives_up() {
-        let partition = Partition::build(Chart::new(0.0), vec![], 1024);
-        let mut few = goal(1);
-        few.evaluations = 5000;
-        let rough = |wi: &[Direction], out: &mut [f64]| {
-            for (wi, out) in wi.iter().zip(out) {
-                *out = 1.0 + (1e4 * wi.x).sin();
-            }
-            Ok::<_, ()>(())
-        };
-        assert!(!integrate(&partition, &[], &[], &few, rough).unwrap().converged);
-    }
-
-    #[test]
-    fn passes_errors_on() {
-        let partition = Partition::build(Chart::new(0.0), vec![], 1024);
-        let result = integrate(&partition, &[], &[], &goal(1), |_, _| Err("broken"));
-        assert_eq!(result.unwrap_err(), "broken");
-    }
-}
+#[path = "cubature_tests.rs"]
+mod tests;

@@ -6,10 +6,12 @@ mod breaks;
 mod chart;
 mod cubature;
 mod genz_malik;
+mod octants;
 mod partition;
 
 pub use breaks::Breaks;
-pub use chart::{Chart, Point, STERADIANS, Shape, octants};
-pub use cubature::{Goal, LeafIntegrals, Marker, integrate, integrate_within};
+pub use chart::{Chart, Point, STERADIANS, Shape};
+pub use cubature::{Goal, LeafIntegrals, Marker, Patches, integrate, integrate_on};
 pub use genz_malik::{NODES, Rule};
+pub use octants::{octants, sin_cos_turns};
 pub use partition::{Cell, Partition};

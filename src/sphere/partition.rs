@@ -75,6 +75,11 @@ impl Cell {
         [self.lo[0] + s * (self.hi[0] - self.lo[0]), self.lo[1] + t * (self.hi[1] - self.lo[1])]
     }
 
+    /// Whether all that lies within `reach` of `at` along `axis` lies on it.
+    pub(super) fn holds(&self, axis: usize, at: f64, reach: f64) -> bool {
+        at - reach >= self.lo[axis] && at + reach < self.hi[axis]
+    }
+
     /// Whether it holds the point (lower edges included).
     pub fn contains(&self, p: Point) -> bool {
         (0..2).all(|k| p[k] >= self.lo[k] && p[k] < self.hi[k])

@@ -1,6 +1,7 @@
 //! What the results of a subject depend on, as one short text.
 
 use super::plan::{Case, Plan};
+use super::program;
 use crate::evidence::Meter;
 use crate::plugins::Named;
 use crate::registry::{Spelling, Value};
@@ -12,14 +13,11 @@ use std::sync::{Arc, LazyLock};
 const DIGITS: usize = 16;
 
 /// This program, which is the code of every subject that is built in.
-static PROGRAM: LazyLock<blake3::Hash> = LazyLock::new(|| {
-    let bytes = std::env::current_exe().and_then(std::fs::read).unwrap_or_default();
-    blake3::hash(&bytes)
-});
+static PROGRAM: LazyLock<Vec<u8>> = LazyLock::new(program::identity);
 
 /// The digest of each subject of a plan, by group and spelling: of what it says of
-/// itself, the bytes of its file or program (of this program for what is built in; what
-/// a script imports is not seen), and how it is measured. `samples` are left out where
+/// itself, the bytes of its file or program (the [identity](program::identity) of this
+/// program for what is built in; what a script imports is not seen), and how it is measured. `samples` are left out where
 /// a budget of time decides them.
 pub fn digests(plan: &Plan, samples: bool) -> BTreeMap<(String, String), String> {
     let mut open: BTreeMap<(String, String), blake3::Hasher> = BTreeMap::new();
@@ -67,7 +65,7 @@ fn code(hasher: &mut blake3::Hasher, spelling: &str) {
     let file = name.rsplit_once('#').map_or(name, |(file, _)| file);
     match Named::of(name).or_else(|| Named::of(file)) {
         Some(named) => named.files().iter().for_each(|path| content(hasher, path)),
-        None => add(hasher, PROGRAM.as_bytes()),
+        None => add(hasher, &PROGRAM),
     }
     for (_, value) in parsed.iter().flat_map(|s| &s.parameters) {
         let Value::Text(text) = value else { continue };

@@ -8,6 +8,7 @@ mod file;
 mod mistake;
 mod pairs;
 mod plan;
+mod program;
 mod promises;
 mod reader;
 mod reproduce;

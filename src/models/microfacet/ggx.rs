@@ -2,6 +2,7 @@
 
 use super::Roughness;
 use crate::bsdf::Direction;
+use crate::sphere::sin_cos_turns;
 use std::f64::consts::PI;
 
 /// GGX (B. Walter et al., *Microfacet models for refraction through rough
@@ -14,23 +15,21 @@ pub struct Ggx {
 
 impl Ggx {
     /// D(m) per steradian; ∫D cos θ = 1.
-    #[inline]
+    #[inline(always)]
     pub fn density(&self, m: Direction) -> f64 {
-        if m.z <= 0.0 {
-            return 0.0;
-        }
         let s = self.alpha.scaled_square(m) + m.z * m.z;
-        1.0 / (PI * self.alpha.x * self.alpha.y * s * s)
+        let density = 1.0 / (PI * self.alpha.x * self.alpha.y * s * s);
+        if m.z <= 0.0 { 0.0 } else { density }
     }
 
     /// ∫D max(0, −w·m), the projected area of facets turned away from `w`
     /// (w.z ≥ 0); cos θ times Smith's Λ (Heitz 2014, eq. 72).
-    #[inline]
+    #[inline(always)]
     pub fn backfacing_area(&self, w: Direction) -> f64 {
         let s = self.alpha.scale(w);
         let t2 = s.x * s.x + s.y * s.y;
-        let sum = s.z + (t2 + s.z * s.z).sqrt();
-        if t2 == 0.0 { 0.0 } else { 0.5 * t2 / sum }
+        let area = 0.5 * t2 / (s.z + (t2 + s.z * s.z).sqrt());
+        if t2 == 0.0 { 0.0 } else { area }
     }
 
     /// A normal with density D cos θ (Walter et al. 2007, eq. 35).
@@ -41,21 +40,47 @@ impl Ggx {
         self.alpha.scale(Direction::new(r * cos, r * sin, (1.0 - u[0]).sqrt())).normalized()
     }
 
-    /// A normal visible from `wo` (J. Dupuy and A. Benyoub, *Sampling visible
-    /// GGX normals with spherical caps*, HPG 2023): the half vector of the
-    /// stretched view and a point of a spherical cap.
+    /// A normal visible from `wo`.
     #[inline]
     pub fn sample_visible(&self, wo: Direction, u: &[f64]) -> Direction {
+        self.seen_from(wo).sample([u[0], u[1]])
+    }
+
+    /// What the normals visible from `wo` have in common.
+    #[inline]
+    pub fn seen_from(&self, wo: Direction) -> VisibleNormals {
         let w = self.alpha.scale(wo).normalized();
-        let t2 = w.x * w.x + w.y * w.y;
+        let above = 1.0 + w.z;
+        VisibleNormals { alpha: self.alpha, w, above, below: (w.x * w.x + w.y * w.y) / above }
+    }
+}
+
+/// Normals visible from one direction (J. Dupuy and A. Benyoub, *Sampling visible GGX
+/// normals with spherical caps*, HPG 2023): half vectors of the stretched view and
+/// points of a spherical cap.
+#[derive(Clone, Copy, Debug)]
+pub struct VisibleNormals {
+    alpha: Roughness,
+    /// The stretched view.
+    w: Direction,
+    /// 1 + w.z
+    above: f64,
+    /// 1 − w.z
+    below: f64,
+}
+
+impl VisibleNormals {
+    /// One of them.
+    #[inline(always)]
+    pub fn sample(&self, [u, v]: [f64; 2]) -> Direction {
         // The cap spans z from −w.z to 1. Its z + w.z, 1 − z and 1 + z are
         // formed without cancellation.
-        let z = (1.0 - u[0]) * (1.0 + w.z);
-        let below_top = u[0] * (1.0 + w.z);
-        let above_bottom = z + t2 / (1.0 + w.z);
+        let z = (1.0 - u) * self.above;
+        let below_top = u * self.above;
+        let above_bottom = z + self.below;
         let r = (below_top * above_bottom).sqrt();
-        let (sin, cos) = (2.0 * PI * u[1]).sin_cos();
-        self.alpha.scale(Direction::new(r * cos + w.x, r * sin + w.y, z)).normalized()
+        let (sin, cos) = sin_cos_turns(v);
+        self.alpha.scale(Direction::new(r * cos + self.w.x, r * sin + self.w.y, z)).normalized()
     }
 }
 

@@ -19,6 +19,7 @@ mod roughness;
 mod smith;
 pub(super) mod torrance_sparrow;
 mod v_cavity;
+mod visible_ggx;
 
 pub use beckmann::Beckmann;
 pub use distribution::Distribution;

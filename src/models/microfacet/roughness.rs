@@ -40,13 +40,13 @@ impl Roughness {
     /// roughness, and a normal of unit roughness to the surface (E. Heitz,
     /// *Understanding the masking-shadowing function*, JCGT 2014, §5.3). Not
     /// of unit length.
-    #[inline]
+    #[inline(always)]
     pub fn scale(self, d: Direction) -> Direction {
         Direction::new(self.x * d.x, self.y * d.y, d.z)
     }
 
     /// (mx/αx)² + (my/αy)².
-    #[inline]
+    #[inline(always)]
     pub fn scaled_square(self, m: Direction) -> f64 {
         let (x, y) = (m.x / self.x, m.y / self.y);
         x * x + y * y

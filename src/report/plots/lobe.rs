@@ -56,8 +56,9 @@ fn curves(evidence: &Evidence, densities: &[Densities], whole: bool) -> Vec<Curv
     if has.pdf {
         curves.push(Curve { points: points(|d| d.pdf), colour: LINES[1], how: How::Solid });
     }
+    let integrated = evidence.integrals.as_ref().is_some_and(|i| !i.value.is_empty());
     // What normals have for a value is no light.
-    if has.eval && evidence.description.kind == SubjectKind::Bsdf {
+    if has.eval && integrated && evidence.description.kind == SubjectKind::Bsdf {
         curves.push(Curve { points: points(|d| d.flux), colour: LINES[2], how: How::Dashed });
     }
     curves.push(Curve { points: points(|d| d.drawn), colour: LINES[0], how: How::Marks });

@@ -121,6 +121,7 @@ fn measured(subject: &str, (theta, phi): (f64, f64), claimed: Lobe, sampled: Lob
         largest_weight: 1.0,
         largest_balanced: 1.0,
         converged: true,
+        values_converged: true,
         cross_check: (1.0, 1e-4),
         evaluations: 1 << 17,
         pdf,

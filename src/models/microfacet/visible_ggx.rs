@@ -1,0 +1,184 @@
+//! Many draws at once from GGX's visible normals.
+
+use super::ggx::{Ggx, VisibleNormals};
+use super::{Distribution, Fresnel, Masking, NormalSampling, TorranceSparrow};
+use crate::bsdf::{Direction, Lobe, Samples, Spectrum};
+use crate::models::fresnel;
+
+/// Draws side by side: two vectors of the widest registers.
+const LANES: usize = 8;
+
+/// Torrance and Sparrow's surface of GGX facets under Smith's masking, drawn by its
+/// visible normals, as one `wo` sees it.
+pub(super) struct VisibleGgx<'a> {
+    surface: &'a TorranceSparrow,
+    ggx: Ggx,
+    wo: Direction,
+    normals: VisibleNormals,
+    /// The masked area of wo.
+    masked: f64,
+    /// Density of wi over D, and the inverse.
+    factor: f64,
+    per_factor: f64,
+}
+
+/// A draw but for what its facet reflects.
+#[derive(Clone, Copy)]
+struct Drawn {
+    wi: Direction,
+    /// wo·m
+    om: f64,
+    pdf: f64,
+    /// The weight where all is reflected.
+    scale: f64,
+}
+
+/// Within 1e-150 of the horizon f is beyond f64.
+#[inline(always)]
+fn is_valid(om: f64, wi_z: f64, pdf: f64, weight: f64) -> bool {
+    (om > 0.0) & (wi_z > 0.0) & (pdf > 0.0) & (pdf < f64::INFINITY) & (weight.abs() < f64::INFINITY)
+}
+
+impl<'a> VisibleGgx<'a> {
+    /// `None` of other surfaces, and from below.
+    #[inline]
+    pub(super) fn of(surface: &'a TorranceSparrow, wo: Direction) -> Option<Self> {
+        let TorranceSparrow {
+            distribution: Distribution::Ggx(ggx),
+            masking: Masking::Smith,
+            sampling: NormalSampling::Visible,
+            ..
+        } = surface
+        else {
+            return None;
+        };
+        let masked = ggx.backfacing_area(wo);
+        (wo.z > 0.0).then(|| Self {
+            surface,
+            ggx: *ggx,
+            wo,
+            normals: ggx.seen_from(wo),
+            masked,
+            factor: 0.25 / (wo.z + masked),
+            per_factor: 4.0 * (wo.z + masked),
+        })
+    }
+
+    /// D is a factor of both f and pdf.
+    #[inline(always)]
+    fn draw(&self, u: [f64; 2]) -> Drawn {
+        let m = self.normals.sample(u);
+        let (wo, om) = (self.wo, self.wo.dot(m));
+        let wi = wo.reflected(m);
+        let masked = self.ggx.backfacing_area(wi);
+        let geometry = 0.25 / (wo.z * wi.z + self.masked * wi.z + masked * wo.z);
+        Drawn { wi, om, pdf: self.ggx.density(m) * self.factor, scale: geometry * wi.z * self.per_factor }
+    }
+
+    /// One draw.
+    #[inline]
+    pub(super) fn sample(&self, u: &[f64]) -> Option<(Direction, Spectrum, f64)> {
+        let drawn = self.draw([u[0], u[1]]);
+        let weight = self.surface.reflected(drawn.om, drawn.scale);
+        is_valid(drawn.om, drawn.wi.z, drawn.pdf, weight[0]).then_some((drawn.wi, weight, drawn.pdf))
+    }
+
+    /// A draw for each pair of `u`, appended to `out`.
+    pub(super) fn sample_rows(&self, u: &[[f64; 2]], out: &mut Samples) {
+        let (rows, channels) = (out.len() + u.len(), out.channels);
+        let from = out.len();
+        out.wi.resize(rows, Direction::default());
+        out.weight.resize(rows * channels, 0.0);
+        out.pdf.resize(rows, 0.0);
+        out.lobe.resize(rows, Lobe::NONE);
+        pulp::Arch::new().dispatch(Rows {
+            view: self,
+            u,
+            channels,
+            wi: &mut out.wi[from..],
+            weight: &mut out.weight[from * channels..],
+            pdf: &mut out.pdf[from..],
+            lobe: &mut out.lobe[from..],
+        });
+    }
+}
+
+/// Arguments of [`VisibleGgx::sample_rows`].
+struct Rows<'a> {
+    view: &'a VisibleGgx<'a>,
+    u: &'a [[f64; 2]],
+    channels: usize,
+    wi: &'a mut [Direction],
+    weight: &'a mut [f64],
+    pdf: &'a mut [f64],
+    lobe: &'a mut [Lobe],
+}
+
+impl Rows<'_> {
+    /// Arrays a number, and plain loops over them, are what the compiler makes vectors of.
+    #[inline(always)]
+    fn fill<const N: usize>(&mut self, at: usize, u: &[[f64; 2]; N]) {
+        let [mut x, mut y, mut z, mut om, mut pdf, mut scale] = [[0.0; N]; 6];
+        let [mut first, mut second] = [[0.0; N]; 2];
+        for k in 0..N {
+            [first[k], second[k]] = u[k];
+        }
+        for k in 0..N {
+            let d = self.view.draw([first[k], second[k]]);
+            (x[k], y[k], z[k]) = (d.wi.x, d.wi.y, d.wi.z);
+            (om[k], pdf[k], scale[k]) = (d.om, d.pdf, d.scale);
+        }
+        let mut valid = [false; N];
+        for c in 0..self.channels {
+            let mut weight = scale;
+            match self.view.surface.fresnel {
+                Fresnel::None => {}
+                Fresnel::Conductor(metal) => {
+                    let (eta, absorption) = metal.index()[c];
+                    for k in 0..N {
+                        weight[k] *= fresnel::conductor(om[k].min(1.0), eta, absorption);
+                    }
+                }
+                Fresnel::Schlick(f0) => {
+                    for k in 0..N {
+                        weight[k] *= fresnel::schlick(om[k].min(1.0), f0);
+                    }
+                }
+                Fresnel::Dielectric(eta) => {
+                    for k in 0..N {
+                        weight[k] *= fresnel::dielectric(om[k].min(1.0), eta);
+                    }
+                }
+            }
+            if c == 0 {
+                for k in 0..N {
+                    valid[k] = is_valid(om[k], z[k], pdf[k], weight[k]);
+                }
+            }
+            for k in 0..N {
+                self.weight[(at + k) * self.channels + c] = if valid[k] { weight[k] } else { 0.0 };
+            }
+        }
+        for k in 0..N {
+            let wi = Direction::new(x[k], y[k], z[k]);
+            self.wi[at + k] = if valid[k] { wi } else { Direction::default() };
+            self.pdf[at + k] = if valid[k] { pdf[k] } else { 0.0 };
+            self.lobe[at + k] = if valid[k] { Lobe::GLOSSY_REFLECTION } else { Lobe::NONE };
+        }
+    }
+}
+
+impl pulp::NullaryFnOnce for Rows<'_> {
+    type Output = ();
+
+    #[inline(always)]
+    fn call(mut self) {
+        let (many, rest) = self.u.as_chunks::<LANES>();
+        for (chunk, u) in many.iter().enumerate() {
+            self.fill(chunk * LANES, u);
+        }
+        for (k, u) in rest.iter().enumerate() {
+            self.fill(many.len() * LANES + k, &[*u]);
+        }
+    }
+}
