@@ -8,9 +8,9 @@ use std::sync::atomic::AtomicBool;
 use std::time::Instant;
 
 /// Directions that a case of the default suite evaluates besides its draws (medians of
-/// reports/seed: 172 k, 187 k, and 302 k samples of which 262 k are draws).
-const EVALS: f64 = 172e3;
-const PDFS: f64 = 187e3;
+/// reports/seed: 121 k, 194 k, and 302 k samples of which 262 k are draws).
+const EVALS: f64 = 121e3;
+const PDFS: f64 = 194e3;
 const SAMPLES: f64 = 40e3;
 
 /// Seconds that gonio itself spends on a draw (README, "Cost": 27 ns), and on the rest of
