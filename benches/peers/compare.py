@@ -22,7 +22,7 @@ PARTS = ("cost", "false-alarms", "power", "equal-power")
 def arguments() -> argparse.Namespace:
     parser = argparse.ArgumentParser(prog="benches/peers/run", description=__doc__)
     parser.add_argument("--quick", action="store_true", help="a few configurations, few seeds, coarse grids")
-    parser.add_argument("--part", action="append", choices=PARTS, help="only this part (may be repeated)")
+    parser.add_argument("--part", action="append", choices=PARTS, help="only this part (may be repeated); the others stay as they are")
     parser.add_argument("--out", type=Path, metavar="DIR", help="where peers.json and peers.md go (target/peers)")
     parser.add_argument("--repetitions", type=int, metavar="N", help="of each time (5; quick: 3)")
     parser.add_argument("--seeds", type=int, metavar="N", help="of each false-alarm and power figure (40; quick: 20)")
@@ -41,11 +41,12 @@ def main() -> None:
     home.mkdir(parents=True, exist_ok=True)
     tools = Tools(Path(sys.executable), args.programs / "gonio", args.programs / "examples/peers", home)
     parts = args.part or PARTS
-    result: dict[str, Any] = {
+    about = {
         "machine": {"processor": processor(), "cores": os.cpu_count(), "python": platform.python_version()},
         "quick": args.quick,
         "repetitions": repetitions,
     }
+    result: dict[str, Any] = {**earlier(out, about if args.part else None), **about}
 
     def tell(what: str) -> None:
         print(f"peers: {what}", file=sys.stderr, flush=True)
@@ -82,6 +83,15 @@ def main() -> None:
         result["target"] = target(tools, headline(), terms, 3 * repetitions)
         keep()
     print((out / "peers.md").read_text())
+
+
+def earlier(out: Path, about: dict[str, Any] | None) -> dict[str, Any]:
+    """What `out` has of the other parts, where it was measured alike on such a machine."""
+    path = out / "peers.json"
+    if about is None or not path.exists():
+        return {}
+    kept = json.loads(path.read_text())
+    return kept if all(kept.get(key) == value for key, value in about.items()) else {}
 
 
 def processor() -> str:

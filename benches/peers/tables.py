@@ -143,7 +143,7 @@ def target(result: dict[str, Any]) -> str:
 def markdown(result: dict[str, Any]) -> str:
     machine = result["machine"]
     title = "# gonio beside Mitsuba 3.9.1\n\n"
-    parts = [title + f"{machine['processor']}, {machine['cores']} cores; everything measured in turn in one run.\n"]
+    parts = [title + f"{machine['processor']}, {machine['cores']} cores; each part measured in turn in one run.\n"]
     if "target" in result:
         parts.append(target(result))
     if "power" in result:
