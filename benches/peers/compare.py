@@ -53,6 +53,8 @@ def main() -> None:
 
     def keep() -> None:
         """After each part, so that a run that is stopped has left something."""
+        if "power" in result:
+            result["gonios_power"] = gonios_power(Path(__file__).parents[2] / "reports/calibration/calibration.json")
         (out / "peers.json").write_text(json.dumps(result, indent=1, ensure_ascii=False) + "\n")
         (out / "peers.md").write_text(markdown(result))
 
@@ -66,9 +68,7 @@ def main() -> None:
         keep()
     if "power" in parts:
         tell("power of ChiSquareTest on the graded bugs")
-        calibration = Path(__file__).parents[2] / "reports/calibration/calibration.json"
         result["power"] = mitsubas_power(tools, args.quick, seeds)
-        result["gonios_power"] = gonios_power(calibration)
         keep()
     if "equal-power" in parts:
         tell("samples at equal power, and their CPU time")
