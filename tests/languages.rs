@@ -20,8 +20,9 @@ fn subject(spelling: &str) -> Arc<dyn Subject> {
 /// eval, pdf and samples for fixed inputs.
 fn numbers(subject: &dyn Subject, wo: Direction) -> (Vec<f64>, Vec<f64>, Samples) {
     const ROWS: usize = 1024;
-    // Weyl's sequence: the same everywhere, without a generator.
-    let u: Vec<f64> = (0..2 * ROWS).map(|k| (0.5 + k as f64 * 0.618_033_988_749_894_9).fract()).collect();
+    // Weyl's sequence: the same everywhere, without a generator. Not from ½, where GGX of α = 1
+    // reflects light from the normal into the horizon, and rounding decides on which side.
+    let u: Vec<f64> = (0..2 * ROWS).map(|k| (0.3 + k as f64 * 0.618_033_988_749_894_9).fract()).collect();
     let mut samples = Samples::default();
     samples.clear(subject.describe().channels.len());
     assert_eq!(subject.describe().dimensions, 2);
