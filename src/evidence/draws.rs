@@ -89,7 +89,6 @@ impl Sums {
         let mut column = Vec::with_capacity(count);
         for c in 0..channels {
             column.clear();
-            // One channel is a stride that the compiler knows.
             match channels {
                 1 => column.extend_from_slice(rows),
                 _ => column.extend(rows.iter().skip(c).step_by(channels)),
@@ -319,12 +318,13 @@ impl Draws {
         let row = |k: usize| &u[k * meter.dimensions()..(k + 1) * meter.dimensions()];
         let has_pdf = meter.description.has.pdf;
         serial.clear();
-        for (k, (leaf, lobe)) in leaves.iter().zip(&samples.lobe).enumerate() {
-            let lobe = *lobe;
+        for (k, (leaf, &lobe)) in leaves.iter().zip(&samples.lobe).enumerate() {
             if !lobe.is_continuous() {
                 if lobe.is_valid() {
-                    // No cosine meets it.
-                    balance.get_mut(k).into_iter().for_each(|share| *share = 1.0);
+                    // No cosine meets it. Without mis there are no shares.
+                    if let Some(share) = balance.get_mut(k) {
+                        *share = 1.0;
+                    }
                     self.add_discrete(setup, samples.wi[k], lobe, samples.pdf[k], samples.weight_of(k));
                 } else {
                     self.none += 1;

@@ -223,7 +223,6 @@ fn has_jump(meter: &Meter, setup: &Setup, active: [usize; 2]) -> Result<bool, Ha
 }
 
 /// A line through the unit square along one of its axes.
-#[derive(Clone)]
 struct Line {
     u: Vec<f64>,
     axis: usize,
