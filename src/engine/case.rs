@@ -170,6 +170,7 @@ impl<'r, 'a> Run<'r, 'a> {
             detect: case.settings.detect,
         };
         let wo = case.wo();
+        let looks = looks(case.settings.samples);
         let setup = Setup {
             wo,
             transport: case.transport,
@@ -179,6 +180,7 @@ impl<'r, 'a> Run<'r, 'a> {
                 .with("subject", description.key(&case.spelling))
                 .with("wo", &format!("{:x} {:x} {:x}", wo.x.to_bits(), wo.y.to_bits(), wo.z.to_bits()))
                 .with("transport", &case.transport.to_string()),
+            draws: looks.last().copied().unwrap_or(0),
             eval: open.iter().flat_map(|o| o.check.needs()).any(|m| m.reads_eval()),
             mis: description.has.eval
                 && description.has.pdf
@@ -192,7 +194,7 @@ impl<'r, 'a> Run<'r, 'a> {
             company: &case.company,
             seed,
             attempt: budget::attempt(share),
-            looks: looks(case.settings.samples),
+            looks,
             terms,
         }
     }
@@ -200,8 +202,7 @@ impl<'r, 'a> Run<'r, 'a> {
     fn finish(mut self, findings: &mut Vec<Finding>) -> Evidence {
         findings.append(&mut self.skipped);
         let asked: Vec<Measurement> = self.open.iter().flat_map(|o| o.check.needs()).copied().collect();
-        let most = self.looks.last().copied().unwrap_or(0);
-        self.gatherer.prepare(&asked, self.company, most);
+        self.gatherer.prepare(&asked, self.company);
         if self.gatherer.evidence().looks_unimplemented() {
             let skip = |o: &Open| o.check.id() != "sanity";
             for open in self.open.extract_if(.., |o| skip(o)) {

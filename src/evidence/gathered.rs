@@ -17,9 +17,6 @@ use crate::sphere::{Breaks, Chart, Partition, Point};
 use serde::{Deserialize, Serialize};
 use std::sync::Arc;
 
-/// Leaves of a partition.
-const LEAVES: usize = 1024;
-
 /// The cubature stops at this many directions: eight times what the
 /// narrowest built-in lobe takes.
 const MOST_EVALUATIONS: u64 = 600_000;
@@ -203,10 +200,9 @@ impl<'a> Gatherer<'a> {
         self.evidence
     }
 
-    /// Measures all that is asked for except the draws, `draws` of which will be
-    /// compared with the integrals. Where the subject fails, the other
-    /// measurements go on, unless it is out of time.
-    pub fn prepare(&mut self, asked: &[Measurement], company: &Company, draws: u64) {
+    /// Measures all that is asked for except the draws. Where the subject fails, the
+    /// other measurements go on, unless it is out of time.
+    pub fn prepare(&mut self, asked: &[Measurement], company: &Company) {
         use Measurement as M;
         let (has, kind) = (self.meter.description.has, self.meter.description.kind);
         let eval = self.setup.eval;
@@ -242,13 +238,13 @@ impl<'a> Gatherer<'a> {
         if [M::Masses, M::Integrals, M::Draws].iter().any(|step| asked.contains(step))
             && (has.eval || has.pdf || has.sample)
             && !self.is_over()
-            && let Err((step, halt)) = self.integrate(draws)
+            && let Err((step, halt)) = self.integrate()
         {
             self.halted(step, halt);
         }
         if let (true, false, Some((name, other))) =
             (asked.contains(&M::Reference), self.is_over(), &company.reference)
-            && let Err(halt) = self.compare(name, &**other, company.within, draws)
+            && let Err(halt) = self.compare(name, &**other, company.within)
         {
             self.halted(M::Reference, halt);
         }
@@ -383,29 +379,29 @@ impl<'a> Gatherer<'a> {
         other
     }
 
-    fn integrate(&mut self, draws: u64) -> Result<(), (Measurement, Halt)> {
-        self.integrate_pdf(draws).map_err(|halt| (Measurement::Masses, halt))?;
+    fn integrate(&mut self) -> Result<(), (Measurement, Halt)> {
+        self.integrate_pdf().map_err(|halt| (Measurement::Masses, halt))?;
         if self.setup.eval {
             self.integrate_values().map_err(|halt| (Measurement::Integrals, halt))?;
         }
         Ok(())
     }
 
-    fn integrate_pdf(&mut self, draws: u64) -> Result<(), Halt> {
+    fn integrate_pdf(&mut self) -> Result<(), Halt> {
         let native = self.meter.cells(self.setup.wo)?;
         let breaks = native.as_ref().map(Breaks::new);
         let chart = breaks.as_ref().map_or_else(|| Chart::new(self.setup.wo.phi()), Breaks::chart);
-        let pilot = self.pilot_points(&chart);
+        let (pilot, leaves) = (self.pilot_points(&chart), self.setup.leaves());
         let mut partition = match &breaks {
-            Some(breaks) => Partition::build_along(breaks, pilot.clone(), LEAVES),
-            None => Partition::build(chart, pilot.clone(), LEAVES),
+            Some(breaks) => Partition::build_along(breaks, pilot.clone(), leaves),
+            None => Partition::build(chart, pilot.clone(), leaves),
         };
         self.evidence.given = native.map(|native| native.given);
-        let (mut integrals, mut integrated) = self.masses(&partition, &pilot, draws)?;
-        let heavy = integrals.heavy_leaves(&partition, &pilot);
+        let (mut integrals, mut integrated) = self.masses(&partition, &pilot)?;
+        let heavy = integrals.heavy_leaves(&integrated);
         if !pilot.is_empty() && heavy.iter().any(|h| *h) {
             partition = partition.refined(&heavy);
-            (integrals, integrated) = self.masses(&partition, &pilot, draws)?;
+            (integrals, integrated) = self.masses(&partition, &pilot)?;
         }
         self.evidence.partition = Some(partition);
         self.evidence.integrals = Some(integrals);
@@ -413,14 +409,9 @@ impl<'a> Gatherer<'a> {
         Ok(())
     }
 
-    fn masses(
-        &self,
-        partition: &Partition,
-        points: &[Point],
-        draws: u64,
-    ) -> Result<(Integrals, Integrated), Halt> {
+    fn masses(&self, partition: &Partition, points: &[Point]) -> Result<(Integrals, Integrated), Halt> {
         let pilot = (&self.pilot, points);
-        Integrals::masses(&self.meter, &self.setup, partition, pilot, draws, MOST_EVALUATIONS)
+        Integrals::masses(&self.meter, &self.setup, partition, pilot, MOST_EVALUATIONS)
     }
 
     fn integrate_values(&mut self) -> Result<(), Halt> {
@@ -439,13 +430,7 @@ impl<'a> Gatherer<'a> {
         points
     }
 
-    fn compare(
-        &mut self,
-        name: &str,
-        other: &dyn Subject,
-        within: Option<f64>,
-        draws: u64,
-    ) -> Result<(), Halt> {
+    fn compare(&mut self, name: &str, other: &dyn Subject, within: Option<f64>) -> Result<(), Halt> {
         let description = Meter::describe(other)?;
         let claims: Claims = description.claims;
         let other = Meter::new(other, description, self.watch.clone());
@@ -456,8 +441,7 @@ impl<'a> Gatherer<'a> {
             let points = self.pilot_points(partition.chart());
             let pilot = (&self.pilot.of_another(), &points[..]);
             let setup = Setup { claims, ..self.setup.clone() };
-            let (integrals, _) =
-                Integrals::masses(&other, &setup, partition, pilot, draws, MOST_EVALUATIONS)?;
+            let (integrals, _) = Integrals::masses(&other, &setup, partition, pilot, MOST_EVALUATIONS)?;
             comparison.unreliable = integrals.masses_reliable().err();
             comparison.mass_error = integrals.mass().1;
             comparison.masses = integrals.pdf;

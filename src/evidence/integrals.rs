@@ -48,7 +48,7 @@ pub struct Integrals {
     pub lost: f64,
     /// Largest f·|cos θi|/pdf met.
     pub largest_weight: f64,
-    /// Largest f·|cos θi|/(pdf + cosine density) met.
+    /// Largest f·|cos θi|/(pdf + cosine density) met, the latter by its share of draws.
     pub largest_balanced: f64,
     /// Whether the cubature of pdf reached its goals.
     pub converged: bool,
@@ -141,22 +141,21 @@ impl Integrals {
     }
 
     /// Integrates pdf over the leaves of `partition`. `pilot` are directions that the
-    /// sampler visits, and their points, `draws` the number of draws to be compared with,
-    /// and `evaluations` a cap. The values are not there yet; what they are integrated
-    /// from on, so that the masses are the same whether they are asked for or not.
+    /// sampler visits, and their points, and `evaluations` a cap. The values are not there
+    /// yet; what they are integrated from on, so that the masses are the same whether they
+    /// are asked for or not.
     pub fn masses(
         meter: &Meter,
         setup: &Setup,
         partition: &Partition,
         (pilot, points): (&Pilot, &[Point]),
-        draws: u64,
         evaluations: u64,
     ) -> Result<(Self, Integrated), Halt> {
         let breaks = meter.cells(setup.wo)?.map(|native| Breaks::new(&native));
         // A cell's neighbour knows nothing of it beyond a jump.
         let reaching = breaks.is_none();
         let (markers, directions) = markers(meter, setup, partition, (pilot, points), reaching)?;
-        let goal = Goal { draws, evaluations, ..goal(meter, setup, 0) };
+        let goal = Goal { draws: setup.draws, evaluations, ..goal(meter, setup, 0) };
         let patches = Patches::new(breaks.as_ref(), partition, points, &markers, goal.horizon);
         let mut density = Vec::new();
         let (leaf, patches) = integrate_on(patches, partition, points.len(), &markers, &goal, |wi, rows| {
@@ -248,20 +247,14 @@ impl Integrals {
     }
 
     /// Leaves whose mass is far above what the pilot found there.
-    pub fn heavy_leaves(&self, partition: &Partition, pilot: &[Point]) -> Vec<bool> {
-        let mut found = vec![0u64; partition.len()];
-        let mut leaves = Vec::new();
-        partition.locate_all(pilot, &mut leaves);
-        for leaf in leaves {
-            found[leaf as usize] += 1;
-        }
-        let size = pilot.len() as f64;
-        (0..partition.len())
-            .map(|l| {
-                let expected = self.pdf[l] * size;
-                expected > 2.0 * found[l] as f64 + 5.0 * expected.sqrt() + 5.0
-            })
-            .collect()
+    pub fn heavy_leaves(&self, integrated: &Integrated) -> Vec<bool> {
+        let found = integrated.patches.pilot(self.pdf.len());
+        let size = found.iter().sum::<u64>() as f64;
+        let is_heavy = |(p, found): (&f64, u64)| {
+            let expected = p * size;
+            expected > 2.0 * found as f64 + 5.0 * expected.sqrt() + 5.0
+        };
+        self.pdf.iter().zip(found).map(is_heavy).collect()
     }
 }
 
@@ -408,8 +401,8 @@ fn cross_check(
         directions.clear();
         points.extend(patches.iter().enumerate().map(|(k, cell)| {
             let index = k as u32 % (1 << 16);
-            let [s, t] = [0, 1].map(|d| f64::from(sobol_burley::sample(index, d, seed)));
-            cell.at(s, t)
+            let [s, t, ..] = sobol_burley::sample_4d(index, 0, seed);
+            cell.at(s.into(), t.into())
         }));
         partition.chart().to_directions(&points, &mut directions);
         meter.pdf(setup.wo, &directions, setup.transport, &mut density)?;

@@ -9,9 +9,6 @@ use super::tally::{Place, Tally, relative_error};
 use crate::bsdf::{Cosine, Direction, Lobe, Samples};
 use serde::{Deserialize, Serialize};
 
-/// Blocks of pilot draws: 32 points for each of 1024 leaves.
-const BLOCKS: u64 = 8;
-
 /// A discrete draw of the pilot.
 #[derive(Clone, Debug, PartialEq)]
 pub struct DiscreteDraw {
@@ -87,7 +84,7 @@ impl SampleIdentities {
         let (mut u, mut value, mut density) = (Vec::new(), Vec::new(), Vec::new());
         let (d, channels) = (meter.dimensions(), meter.channels());
         let has = meter.description.has;
-        for block in 0..BLOCKS {
+        for block in 0..setup.pilot_blocks() {
             u.resize(BLOCK as usize * d, 0.0);
             setup.key.with("stage", "pilot").block(block).fill(meter.coarse_u(), &mut u);
             meter.sample(setup.wo, &u, setup.transport, &mut samples)?;
@@ -214,7 +211,7 @@ impl Pilot {
 pub(super) fn discrete_lobes(meter: &Meter, setup: &Setup) -> Result<Vec<DiscreteDraw>, Halt> {
     let (mut pilot, mut samples) = (Pilot::default(), Samples::default());
     let mut u = vec![0.0; BLOCK as usize * meter.dimensions()];
-    for block in 0..BLOCKS {
+    for block in 0..setup.pilot_blocks() {
         setup.key.with("stage", "pilot").block(block).fill(meter.coarse_u(), &mut u);
         meter.sample(setup.wo, &u, setup.transport, &mut samples)?;
         pilot.add_discrete(&samples);

@@ -1,5 +1,6 @@
 //! What changes when a parameter changes, at limits, and on the other side.
 
+use super::draws::BLOCK;
 use super::integrals::expected_directions;
 use super::meter::{Halt, Meter, Watch};
 use super::parts;
@@ -404,9 +405,9 @@ fn compare(
     }
 }
 
-/// Discrete lobes of this probability are met in the draws of a pilot, or missed with
-/// probability 6e-15.
-const MET: f64 = 1e-3;
+/// A discrete lobe that a pilot meets so often on average is missed with probability
+/// e⁻³² = 1e-14.
+const MET: f64 = 32.0;
 
 /// So near, in radians, two discrete directions are those of one lobe, or within the
 /// tolerance, where that is more.
@@ -421,7 +422,7 @@ fn compare_lobes(tally: &mut Tally, setup: &Setup, own: &[DiscreteDraw], theirs:
     };
     let missing = |tally: &mut Tally, lobe: &DiscreteDraw, name: &str| {
         // A rare one may have been missed.
-        if lobe.probability >= MET {
+        if lobe.probability * (setup.pilot_blocks() * BLOCK) as f64 >= MET {
             tally.look(1.0, || Place::pair(setup.wo, lobe.wi).value(name, lobe.probability));
         }
     };

@@ -4,7 +4,7 @@ use super::along::within;
 use super::breaks::Breaks;
 use super::chart::{Chart, Point, Shape};
 use super::genz_malik::{NODES, Rule};
-use super::partition::{Cell, Partition};
+use super::partition::{Cell, Partition, partition_points};
 use crate::bsdf::Direction;
 
 /// A place where the integrand is known to be at least this large.
@@ -141,6 +141,17 @@ pub(super) struct Patch {
     markers: Vec<u32>,
     /// Largest pdf, and largest sum of controlled values, at its nodes.
     seen: [f64; 2],
+    /// The same of its markers.
+    marked: [f64; 2],
+}
+
+impl Patch {
+    fn look_at(&mut self, markers: &[Marker]) {
+        self.marked = self.markers.iter().fold([0.0; 2], |most, m| {
+            let Marker { density, value, .. } = markers[*m as usize];
+            [most[0].max(density), most[1].max(value)]
+        });
+    }
 }
 
 /// Integrates `f` over each leaf of `partition`: Genz and Malik's rule of
@@ -183,6 +194,13 @@ impl Patches {
         Self(first_patches(partition, cells, pilot, markers, horizon))
     }
 
+    /// Points of the pilot by leaf, of which there are `leaves`.
+    pub fn pilot(&self, leaves: usize) -> Vec<u64> {
+        let mut found = vec![0; leaves];
+        self.0.iter().for_each(|patch| found[patch.leaf as usize] += patch.pilot.len() as u64);
+        found
+    }
+
     /// The same, whatever the pilot found: its counts say nothing of the next function.
     pub fn without_pilot(mut self) -> Self {
         self.0.iter_mut().for_each(|patch| patch.pilot.clear());
@@ -211,8 +229,9 @@ pub fn integrate_on<E>(
     loop {
         evaluations += (todo.len() * NODES) as u64;
         evaluate(partition, &mut todo, goal, &mut f, &mut values, &mut errors, &mut largest)?;
+        todo.iter_mut().for_each(|patch| patch.look_at(markers));
         done.append(&mut todo);
-        let mut split = to_split(&done, markers, &values, &errors, partition, goal, pilot_size);
+        let mut split = to_split(&done, &values, &errors, partition, goal, pilot_size);
         if 2 * evaluations >= goal.evaluations {
             // The rest is for what must be reached.
             split.iter_mut().filter(|s| **s == Split::Wanted).for_each(|s| *s = Split::No);
@@ -287,20 +306,31 @@ fn first_patches(
             pilot: Vec::new(),
             markers: Vec::new(),
             seen: [0.0; 2],
+            marked: [0.0; 2],
         })
         .collect();
     let mut leaves = Vec::new();
+    let count = |leaves: &[u32]| {
+        let mut counts = vec![0; partition.len()];
+        leaves.iter().for_each(|leaf| counts[*leaf as usize] += 1);
+        counts
+    };
     partition.locate_all(pilot, &mut leaves);
-    for (p, leaf) in pilot.iter().zip(leaves) {
-        of_leaf[leaf as usize].pilot.push(*p);
+    for (of_leaf, points) in of_leaf.iter_mut().zip(count(&leaves)) {
+        of_leaf.pilot.reserve(points);
+    }
+    for (p, leaf) in pilot.iter().zip(&leaves) {
+        of_leaf[*leaf as usize].pilot.push(*p);
     }
     // Most lie in one leaf with all that they reach.
     let places: Vec<Point> = markers.iter().map(|m| m.at).collect();
-    let mut leaves = Vec::new();
     partition.locate_all(&places, &mut leaves);
+    for (of_leaf, markers) in of_leaf.iter_mut().zip(count(&leaves)) {
+        of_leaf.markers.reserve(markers);
+    }
     let mut across: Vec<u32> = Vec::new();
-    for (k, (marker, leaf)) in markers.iter().zip(leaves).enumerate() {
-        let of_leaf = &mut of_leaf[leaf as usize];
+    for (k, (marker, leaf)) in markers.iter().zip(&leaves).enumerate() {
+        let of_leaf = &mut of_leaf[*leaf as usize];
         if (0..2).all(|axis| of_leaf.cell.holds(axis, marker.at[axis], marker.reach)) {
             of_leaf.markers.push(k as u32);
         } else {
@@ -308,7 +338,6 @@ fn first_patches(
         }
     }
     let corners: Vec<Point> = across.iter().flat_map(|m| markers[*m as usize].corners()).collect();
-    let mut leaves = Vec::new();
     partition.locate_all(&corners, &mut leaves);
     for (marker, leaves) in across.iter().zip(leaves.as_chunks_mut::<4>().0) {
         leaves.sort_unstable();
@@ -372,8 +401,9 @@ fn crowd(patch: &Patch, axis: usize) -> f64 {
     const BINS: usize = 1 + (1.0 / CROWDED) as usize;
     let (half, width) = (patch.pilot.len().div_ceil(2), patch.cell.width(axis));
     let mut bins = [0usize; BINS];
+    let per_bin = 1.0 / (width * CROWDED);
     for p in &patch.pilot {
-        bins[((p[axis] - patch.cell.lo[axis]) / (width * CROWDED)) as usize % BINS] += 1;
+        bins[((p[axis] - patch.cell.lo[axis]) * per_bin) as usize % BINS] += 1;
     }
     if bins.windows(2).all(|pair| pair[0] + pair[1] < half) {
         return f64::INFINITY;
@@ -393,17 +423,17 @@ fn halve(patch: Patch, markers: &[Marker]) -> [Patch; 2] {
 
 /// Both parts of a patch, cut at `at` across `axis`.
 pub(super) fn cut(patch: Patch, markers: &[Marker], axis: usize, at: f64) -> [Patch; 2] {
-    let (left_pilot, right_pilot) = patch.pilot.into_iter().partition(|p| p[axis] < at);
-    let (mut left_markers, mut right_markers) = (Vec::new(), Vec::new());
-    for k in patch.markers {
-        let m = &markers[k as usize];
-        if m.at[axis] - m.reach < at {
-            left_markers.push(k);
-        }
-        if m.at[axis] + m.reach >= at {
-            right_markers.push(k);
-        }
-    }
+    // The left part keeps the memory.
+    let mut left_pilot = patch.pilot;
+    let below = partition_points(&mut left_pilot, |p| p[axis] < at);
+    let right_pilot = left_pilot.split_off(below);
+    let mut left_markers = patch.markers;
+    let ends = |k: u32| {
+        let Marker { at, reach, .. } = markers[k as usize];
+        [at[axis] - reach, at[axis] + reach]
+    };
+    let right_markers = left_markers.iter().copied().filter(|k| ends(*k)[1] >= at).collect();
+    left_markers.retain(|k| ends(*k)[0] < at);
     let [left, right] = patch.cell.split(axis, at);
     let half = |cell, pilot, markers| Patch {
         leaf: patch.leaf,
@@ -414,6 +444,7 @@ pub(super) fn cut(patch: Patch, markers: &[Marker], axis: usize, at: f64) -> [Pa
         pilot,
         markers,
         seen: [0.0; 2],
+        marked: [0.0; 2],
     };
     [half(left, left_pilot, left_markers), half(right, right_pilot, right_markers)]
 }
@@ -491,7 +522,6 @@ enum Split {
 /// Which patches are to be halved.
 fn to_split(
     patches: &[Patch],
-    markers: &[Marker],
     values: &[f64],
     errors: &[f64],
     partition: &Partition,
@@ -542,12 +572,10 @@ fn to_split(
                 cell_sum > NONCENTRALITY && cell_term(patch.leaf as usize) * error[0] > NONCENTRALITY * share;
             let off = |c: usize| total_error[c] > allowed(c) && error[c] > allowed(c) * share;
             let (by_mass, by_value) = (off(0), (1..steering).any(off));
-            let solid_angle =
-                if patch.markers.is_empty() { 0.0 } else { partition.chart().solid_angle(&patch.cell) };
-            let by_marker = patch.markers.iter().map(|m| &markers[*m as usize]).any(|m| {
-                (m.density > 3.0 * patch.seen[0] && m.density * solid_angle > allowed(0))
-                    || (m.value > 3.0 * patch.seen[1]
-                        && m.value * solid_angle > (1..steering).map(allowed).sum())
+            let by_marker = (0..2).any(|k| {
+                let missed = patch.marked[k] > 3.0 * patch.seen[k];
+                let counts = |allowed| patch.marked[k] * partition.chart().solid_angle(&patch.cell) > allowed;
+                missed && counts(if k == 0 { allowed(0) } else { (1..steering).map(allowed).sum() })
             });
             let expected = values[k * n] * pilot_size;
             let found = patch.pilot.len() as f64;

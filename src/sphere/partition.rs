@@ -16,13 +16,12 @@ pub(super) const NARROWEST: f64 = 2.0 / GRID;
 /// word.
 const FEWEST_POINTS: usize = 16;
 
-/// Searches that go down the tree side by side: enough to hide the latency of
-/// loads (of 4 to 256, measured, 16 is fastest).
+/// Searches that go down the tree side by side: two vectors of the widest registers.
 const SIDE_BY_SIDE: usize = 16;
 
-/// Depths of a [`Descent`]: 1024 leaves of a hemisphere lie at 11, and tables of 2¹³
-/// entries still stay in the cache.
-const DESCENTS: std::ops::RangeInclusive<usize> = 11..=13;
+/// Depths of a [`Descent`]: 256 leaves of a hemisphere lie at 9, 1024 at 11, and tables of
+/// 2¹³ entries still stay in the cache.
+const DESCENTS: std::ops::RangeInclusive<usize> = 9..=13;
 
 /// A hemisphere in which the pilot has no points is cut into 2⁴ equal cells.
 pub(super) const EMPTY_DEPTH: u32 = 4;
@@ -175,18 +174,17 @@ impl Partition {
         if leaves < 2 || points.len() < 2 * FEWEST_POINTS {
             return;
         }
-        let extent = |axis: usize| {
-            let (lo, hi) = points
-                .iter()
-                .fold((f64::INFINITY, f64::NEG_INFINITY), |(lo, hi), p| (lo.min(p[axis]), hi.max(p[axis])));
-            hi - lo
-        };
-        let wide = usize::from(extent(1) > extent(0));
+        let (mut lo, mut hi) = ([f64::INFINITY; 2], [f64::NEG_INFINITY; 2]);
+        for p in points.iter() {
+            for axis in 0..2 {
+                lo[axis] = if p[axis] < lo[axis] { p[axis] } else { lo[axis] };
+                hi[axis] = if p[axis] > hi[axis] { p[axis] } else { hi[axis] };
+            }
+        }
+        let wide = usize::from(hi[1] - lo[1] > hi[0] - lo[0]);
         // Many equal directions may leave no room on one axis.
         for axis in [wide, 1 - wide] {
-            let half = points.len() / 2;
-            let (_, median, _) = points.select_nth_unstable_by(half, |a, b| a[axis].total_cmp(&b[axis]));
-            let at = snap(median[axis]);
+            let at = snap(median(points.iter().map(|p| p[axis])));
             let cell = self.cells[node];
             if at - cell.lo[axis] < NARROWEST || cell.hi[axis] - at < NARROWEST {
                 continue;
@@ -312,6 +310,8 @@ impl Partition {
         };
         leaves.resize(points.len(), 0);
         match descent.depth {
+            9 => descent.search::<{ 1 << 9 }>(points, leaves),
+            10 => descent.search::<{ 1 << 10 }>(points, leaves),
             11 => descent.search::<{ 1 << 11 }>(points, leaves),
             12 => descent.search::<{ 1 << 12 }>(points, leaves),
             _ => descent.search::<{ 1 << 13 }>(points, leaves),
@@ -370,39 +370,77 @@ impl Descent {
     /// As [`Partition::locate_all`], for tables of `LEN` entries: a length that the
     /// compiler knows spares a check of bounds a level.
     fn search<const LEN: usize>(&self, points: &[Point], leaves: &mut [u32]) {
-        let (many, rest) = points.as_chunks::<SIDE_BY_SIDE>();
-        let (to_many, to_rest) = leaves.as_chunks_mut::<SIDE_BY_SIDE>();
-        for (points, leaves) in many.iter().zip(to_many) {
-            *leaves = self.leaves::<LEN, _>(points);
-        }
-        for (point, leaf) in rest.iter().zip(to_rest) {
-            [*leaf] = self.leaves::<LEN, _>(&[*point]);
-        }
-    }
-
-    #[inline(always)]
-    fn leaves<const LEN: usize, const N: usize>(&self, points: &[Point; N]) -> [u32; N] {
         let splits: &[u64; LEN] = self.splits.as_array().expect("the length of this depth");
-        let mut at = [1u32; N];
-        for _ in 0..LEN.ilog2() {
-            for (k, p) in at.iter_mut().zip(points) {
-                let split = splits[*k as usize % LEN];
-                let value = p[(split & 1) as usize];
-                *k = 2 * *k + u32::from(value >= f64::from_bits(split & !1));
-            }
-        }
-        at.map(|k| self.leaves[k as usize % LEN])
+        let of_place = self.leaves.as_array().expect("the length of this depth");
+        pulp::Arch::new().dispatch(Search { splits, of_place, points, leaves });
     }
 }
 
-/// Moves the points for which `first` holds to the front; returns their number.
+/// Arguments of [`Descent::search`].
+struct Search<'a, const LEN: usize> {
+    splits: &'a [u64; LEN],
+    of_place: &'a [u32; LEN],
+    points: &'a [Point],
+    leaves: &'a mut [u32],
+}
+
+impl<const LEN: usize> Search<'_, LEN> {
+    /// Arrays and plain loops over them are what the compiler makes vectors of.
+    #[inline(always)]
+    fn leaves<const N: usize>(&self, points: &[Point; N]) -> [u32; N] {
+        let (mut u, mut v) = ([0.0; N], [0.0; N]);
+        for k in 0..N {
+            [u[k], v[k]] = points[k];
+        }
+        let mut at = [1u64; N];
+        for _ in 0..LEN.ilog2() {
+            for k in 0..N {
+                let split = self.splits[at[k] as usize % LEN];
+                let value = if split & 1 == 1 { v[k] } else { u[k] };
+                at[k] = 2 * at[k] + u64::from(value >= f64::from_bits(split & !1));
+            }
+        }
+        let mut leaves = [0; N];
+        for k in 0..N {
+            leaves[k] = self.of_place[at[k] as usize % LEN];
+        }
+        leaves
+    }
+}
+
+impl<const LEN: usize> pulp::NullaryFnOnce for Search<'_, LEN> {
+    type Output = ();
+
+    #[inline(always)]
+    fn call(mut self) {
+        let all = std::mem::take(&mut self.leaves);
+        let (many, rest) = self.points.as_chunks::<SIDE_BY_SIDE>();
+        let (to_many, to_rest) = all.as_chunks_mut::<SIDE_BY_SIDE>();
+        for (points, leaves) in many.iter().zip(to_many) {
+            *leaves = self.leaves(points);
+        }
+        for (point, leaf) in rest.iter().zip(to_rest) {
+            [*leaf] = self.leaves(&[*point]);
+        }
+    }
+}
+
+/// The upper median of values that are not negative: their bits are ordered as they are.
+fn median(values: impl Iterator<Item = f64>) -> f64 {
+    // −0 has a sign.
+    let mut bits: Vec<u64> = values.map(|value| (value + 0.0).to_bits()).collect();
+    let half = bits.len() / 2;
+    f64::from_bits(*bits.select_nth_unstable(half).1)
+}
+
+/// Moves the points for which `first` holds to the front; returns their number. Each moves,
+/// as it were: a branch would be told wrong half of the time.
 pub(super) fn partition_points(points: &mut [Point], first: impl Fn(&Point) -> bool) -> usize {
     let mut count = 0;
     for k in 0..points.len() {
-        if first(&points[k]) {
-            points.swap(k, count);
-            count += 1;
-        }
+        let is_first = first(&points[k]);
+        points.swap(k, count);
+        count += usize::from(is_first);
     }
     count
 }
@@ -524,7 +562,9 @@ mod tests {
         let usual = tree(random(1 << 15, 1), 1024);
         let once = usual.refined(&vec![true; usual.len()]);
         let trees = [
-            (tree(vec![], 1024), Some(11)),
+            (tree(vec![], 1024), Some(9)),
+            (tree(random(1 << 13, 1), 256), Some(9)),
+            (tree(random(1 << 14, 1), 512), Some(10)),
             (usual, Some(11)),
             (tree(random(1 << 16, 1), 2048), Some(12)),
             (tree(random(1 << 17, 1), 4096), Some(13)),
