@@ -141,7 +141,8 @@ impl Samples {
         match sample {
             Some(s) => {
                 self.wi.push(s.wi);
-                self.weight.extend_from_slice(&s.weight);
+                // A copy of so few would be a call.
+                s.weight.iter().for_each(|w| self.weight.push(*w));
                 self.pdf.push(s.pdf);
                 self.lobe.push(s.lobe);
             }

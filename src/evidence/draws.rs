@@ -6,7 +6,7 @@ use super::setup::Setup;
 use super::tally::{Place, Tally};
 use crate::bsdf::Figure;
 use crate::bsdf::{Direction, Lobe, Precision, Samples};
-use crate::sphere::Partition;
+use crate::sphere::{Partition, sin_cos_turns};
 use serde::{Deserialize, Serialize};
 use std::f64::consts::PI;
 
@@ -81,24 +81,18 @@ impl Sums {
         self.largest = Figure(self.largest.0.max(block.largest.0));
     }
 
-    /// Of rows of `channels` values, each row times its factor where there are any.
-    fn of(rows: &[f64], channels: usize, factors: Option<&[f64]>) -> Self {
+    /// Of rows of `channels` values.
+    fn of(rows: &[f64], channels: usize) -> Self {
         let mut sums = Self::new(channels);
-        let count = rows.len() / channels;
-        sums.count = count as u64;
-        let mut column = Vec::with_capacity(count);
+        sums.count = (rows.len() / channels) as u64;
+        let mut column = Vec::new();
         for c in 0..channels {
-            column.clear();
-            match channels {
-                1 => column.extend_from_slice(rows),
-                _ => column.extend(rows.iter().skip(c).step_by(channels)),
+            if channels > 1 {
+                column.clear();
+                column.extend(rows.iter().skip(c).step_by(channels));
             }
-            let [sum, square, largest] = pulp::Arch::new().dispatch(|| {
-                if let Some(factors) = factors {
-                    column.iter_mut().zip(factors).for_each(|(value, factor)| *value *= factor);
-                }
-                summed(&column)
-            });
+            let values = if channels > 1 { &column } else { rows };
+            let [sum, square, largest] = pulp::Arch::new().dispatch(|| summed(values));
             (sums.sum[c], sums.square[c]) = (sum, square);
             sums.largest = Figure(sums.largest.0.max(largest));
         }
@@ -111,6 +105,17 @@ impl Sums {
         let mean = self.sum[channel] / n;
         (mean, (self.square[channel] / n - mean * mean).max(0.0))
     }
+}
+
+/// Each row of `channels` values times its factor.
+fn scale(rows: &mut [f64], channels: usize, factors: &[f64]) {
+    pulp::Arch::new().dispatch(|| match channels {
+        1 => rows.iter_mut().zip(factors).for_each(|(value, factor)| *value *= factor),
+        _ => {
+            let rows = rows.chunks_exact_mut(channels).zip(factors);
+            rows.for_each(|(row, factor)| row.iter_mut().for_each(|value| *value *= factor));
+        }
+    });
 }
 
 /// Sum, sum of squares and maximum, in [`LANES`] partial sums side by side: a single one
@@ -195,9 +200,10 @@ impl CosineDensity {
 }
 
 /// A direction of that distribution.
+#[inline(always)]
 fn cosine_direction(setup: &Setup, u: [f64; 3]) -> Direction {
     let r = u[0].sqrt();
-    let (sin, cos) = (2.0 * PI * u[1]).sin_cos();
+    let (sin, cos) = sin_cos_turns(u[1]);
     let z = (1.0 - u[0]).sqrt().copysign(setup.wo.z);
     let other = match (setup.claims.reflective, setup.claims.transmissive) {
         (true, true) => u[2] < 0.5,
@@ -224,6 +230,8 @@ struct Scratch {
     leaves: Vec<u32>,
     balance: Vec<f64>,
     serial: Vec<u8>,
+    /// Draws of a discrete lobe, or where pdf has no mass.
+    unusual: Vec<usize>,
     value: Vec<f64>,
     density: Vec<f64>,
     lights: Vec<Direction>,
@@ -296,7 +304,8 @@ impl Draws {
     ) -> Result<(), Halt> {
         let stage = if self.attempt == 0 { "draws" } else { "confirmation" };
         let mut stream = setup.key.with("stage", stage).block(self.samples / BLOCK);
-        let Scratch { u, samples, points, leaves, balance, serial, value, density, lights } = scratch;
+        let Scratch { u, samples, points, leaves, balance, serial, unusual, value, density, lights } =
+            scratch;
         u.resize(BLOCK as usize * meter.dimensions(), 0.0);
         stream.fill(meter.coarse_u(), u);
         meter.sample(setup.wo, u, setup.transport, samples)?;
@@ -317,26 +326,31 @@ impl Draws {
 
         let row = |k: usize| &u[k * meter.dimensions()..(k + 1) * meter.dimensions()];
         let has_pdf = meter.description.has.pdf;
-        serial.clear();
-        for (k, (leaf, &lobe)) in leaves.iter().zip(&samples.lobe).enumerate() {
-            if !lobe.is_continuous() {
-                if lobe.is_valid() {
-                    // No cosine meets it. Without mis there are no shares.
-                    if let Some(share) = balance.get_mut(k) {
-                        *share = 1.0;
-                    }
-                    self.add_discrete(setup, samples.wi[k], lobe, samples.pdf[k], samples.weight_of(k));
-                } else {
-                    self.none += 1;
-                }
-                continue;
-            }
+        serial.resize(samples.len(), 0);
+        let (mut continuous, mut valid) = (0, 0);
+        unusual.clear();
+        for (k, (leaf, lobe)) in leaves.iter().zip(&samples.lobe).enumerate() {
             let leaf = *leaf as usize;
-            self.counts[leaf] += 1;
             let cell = cells[leaf];
-            serial.push(cell.serial);
-            if cell.empty && has_pdf && self.zero_pdf.broken < ENOUGH {
-                let wi = samples.wi[k];
+            let is_continuous = lobe.is_continuous();
+            self.counts[leaf] += u64::from(is_continuous);
+            serial[continuous] = cell.serial;
+            continuous += usize::from(is_continuous);
+            valid += usize::from(lobe.is_valid());
+            if lobe.is_discrete() || (cell.empty && is_continuous) {
+                unusual.push(k);
+            }
+        }
+        self.none += (samples.len() - valid) as u64;
+        for &k in &*unusual {
+            let (wi, lobe) = (samples.wi[k], samples.lobe[k]);
+            if lobe.is_discrete() {
+                // No cosine meets it. Without mis there are no shares.
+                if let Some(share) = balance.get_mut(k) {
+                    *share = 1.0;
+                }
+                self.add_discrete(setup, wi, lobe, samples.pdf[k], samples.weight_of(k));
+            } else if has_pdf && self.zero_pdf.broken < ENOUGH {
                 let there = density_near(meter, setup, wi)?;
                 self.zero_pdf.look(if there > 0.0 { 0.0 } else { 1.0 }, || {
                     let place = Place::pair(setup.wo, wi).drawn_by(row(k));
@@ -344,14 +358,14 @@ impl Draws {
                 });
             }
         }
-        for [before, after] in serial.as_chunks().0 {
+        for [before, after] in serial[..continuous].as_chunks().0 {
             self.serial[usize::from(*before) * SERIAL + usize::from(*after)] += 1;
         }
         let channels = samples.channels;
         if let Some(weights) = weights {
             weights.look(&samples.weight, channels);
         }
-        let weight = Sums::of(&samples.weight, channels, None);
+        let weight = Sums::of(&samples.weight, channels);
         if weight.largest.0 > self.weight.largest.0 {
             let heaviest = samples.weight.iter().position(|w| w.min(LARGEST) == weight.largest.0);
             self.heaviest = heaviest.map(|at| at / channels).map(|k| {
@@ -362,18 +376,21 @@ impl Draws {
         self.weight.append(&weight);
 
         if setup.mis {
-            self.mis_sampler.append(&Sums::of(&samples.weight, channels, Some(balance)));
+            scale(&mut samples.weight, channels, balance);
+            self.mis_sampler.append(&Sums::of(&samples.weight, channels));
             lights.clear();
-            lights.extend(
-                (0..BLOCK / PER_LIGHT).map(|_| {
-                    cosine_direction(setup, [stream.next_f64(), stream.next_f64(), stream.next_f64()])
-                }),
-            );
+            u.resize((3 * BLOCK / PER_LIGHT) as usize, 0.0);
+            stream.fill(false, u);
+            let u = u.as_chunks().0;
+            pulp::Arch::new().dispatch(|| lights.extend(u.iter().map(|u| cosine_direction(setup, *u))));
             meter.eval(setup.wo, lights, setup.transport, value)?;
             meter.pdf(setup.wo, lights, setup.transport, density)?;
-            let factor = |(p, wi): (&f64, &Direction)| wi.abs_cos_theta() / (p + cosine.at(*wi));
-            let factors: Vec<f64> = density.iter().zip(lights.iter()).map(factor).collect();
-            self.mis_cosine.append(&Sums::of(value, channels, Some(&factors)));
+            let factor =
+                |(p, wi): (&f64, &Direction)| wi.abs_cos_theta() / (p + cosine.at(*wi));
+            balance.clear();
+            balance.extend(density.iter().zip(lights.iter()).map(factor));
+            scale(value, channels, balance);
+            self.mis_cosine.append(&Sums::of(value, channels));
         }
         self.samples += BLOCK;
         Ok(())

@@ -46,32 +46,41 @@ impl LogWeights {
     }
 }
 
+/// Weights in a row go to tables of their own: many share a bin, and each count of one
+/// waits for the one before.
+const TABLES: usize = 4;
+
 /// All bins, while draws are under way.
-pub(super) struct WeightTable(Box<[u64; BINS]>);
+pub(super) struct WeightTable([Box<[u64; BINS]>; TABLES]);
 
 impl WeightTable {
     pub(super) fn new() -> Self {
-        let bins = vec![0; BINS].into_boxed_slice();
-        Self(bins.try_into().expect("as many bins as there are"))
+        let bins = || vec![0; BINS].into_boxed_slice();
+        Self(std::array::from_fn(|_| bins().try_into().expect("as many bins as there are")))
     }
 
     /// Counts rows of `channels` weights, of which none is negative.
     pub(super) fn look(&mut self, rows: &[f64], channels: usize) {
         // Masked, since −0 has a sign.
-        let mut count = |w: f64| self.0[((w.to_bits() + HALF) >> SHIFT) as usize % BINS] += 1;
+        let mut count = |table: usize, w: f64| {
+            self.0[table][((w.to_bits() + HALF) >> SHIFT) as usize % BINS] += 1;
+        };
         if channels == 1 {
-            rows.iter().for_each(|w| count(*w));
+            let (many, rest) = rows.as_chunks::<TABLES>();
+            many.iter().for_each(|row| (0..TABLES).for_each(|k| count(k, row[k])));
+            rest.iter().for_each(|w| count(0, *w));
         } else {
             let largest = |row: &[f64]| row.iter().fold(0.0, |a: f64, b| a.max(*b));
-            rows.chunks_exact(channels).for_each(|row| count(largest(row)));
+            rows.chunks_exact(channels).for_each(|row| count(0, largest(row)));
         }
     }
 
     /// Adds what was counted to `to`, without `none` draws that gave no sample and
     /// count as weight 0 here.
     pub(super) fn add_to(&self, to: &mut LogWeights, none: u64) {
-        to.zero += self.0[..ZERO].iter().sum::<u64>().saturating_sub(none);
-        let found = || (ZERO..BINS).filter(|bin| self.0[*bin] > 0);
+        let all: Vec<u64> = (0..BINS).map(|bin| self.0.iter().map(|table| table[bin]).sum()).collect();
+        to.zero += all[..ZERO].iter().sum::<u64>().saturating_sub(none);
+        let found = || (ZERO..BINS).filter(|bin| all[*bin] > 0);
         let (Some(first), Some(last)) = (found().next(), found().next_back()) else { return };
         let kept = (to.first as usize, to.first as usize + to.counts.len());
         let (from, past) = if to.counts.is_empty() {
@@ -79,7 +88,7 @@ impl WeightTable {
         } else {
             (first.min(kept.0), (last + 1).max(kept.1))
         };
-        let mut counts = self.0[from..past].to_vec();
+        let mut counts = all[from..past].to_vec();
         for (old, n) in (kept.0..kept.1).zip(&to.counts) {
             counts[old - from] += n;
         }

@@ -91,9 +91,14 @@ impl Tally {
         }
         let error = if error.is_nan() { f64::INFINITY } else { error };
         if error > self.worst.0 || self.place.is_none() {
-            self.worst = error.into();
-            self.place = Some(place());
+            self.worsen(error, place);
         }
+    }
+
+    #[cold]
+    fn worsen(&mut self, error: f64, place: impl FnOnce() -> Place) {
+        self.worst = error.into();
+        self.place = Some(place());
     }
 
     /// Whether it was broken anywhere.

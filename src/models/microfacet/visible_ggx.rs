@@ -85,21 +85,12 @@ impl<'a> VisibleGgx<'a> {
 
     /// A draw for each pair of `u`, appended to `out`.
     pub(super) fn sample_rows(&self, u: &[[f64; 2]], out: &mut Samples) {
-        let (rows, channels) = (out.len() + u.len(), out.channels);
-        let from = out.len();
-        out.wi.resize(rows, Direction::default());
-        out.weight.resize(rows * channels, 0.0);
-        out.pdf.resize(rows, 0.0);
-        out.lobe.resize(rows, Lobe::NONE);
-        pulp::Arch::new().dispatch(Rows {
-            view: self,
-            u,
-            channels,
-            wi: &mut out.wi[from..],
-            weight: &mut out.weight[from * channels..],
-            pdf: &mut out.pdf[from..],
-            lobe: &mut out.lobe[from..],
-        });
+        out.wi.reserve(u.len());
+        out.pdf.reserve(u.len());
+        out.lobe.reserve(u.len());
+        let from = out.weight.len();
+        out.weight.resize(from + u.len() * out.channels, 0.0);
+        pulp::Arch::new().dispatch(Rows { view: self, u, from, out });
     }
 }
 
@@ -107,11 +98,9 @@ impl<'a> VisibleGgx<'a> {
 struct Rows<'a> {
     view: &'a VisibleGgx<'a>,
     u: &'a [[f64; 2]],
-    channels: usize,
-    wi: &'a mut [Direction],
-    weight: &'a mut [f64],
-    pdf: &'a mut [f64],
-    lobe: &'a mut [Lobe],
+    /// Where its weights begin.
+    from: usize,
+    out: &'a mut Samples,
 }
 
 impl Rows<'_> {
@@ -129,7 +118,9 @@ impl Rows<'_> {
             (om[k], pdf[k], scale[k]) = (d.om, d.pdf, d.scale);
         }
         let mut valid = [false; N];
-        for c in 0..self.channels {
+        let channels = self.out.channels;
+        let weights = &mut self.out.weight[self.from + at * channels..][..N * channels];
+        for c in 0..channels {
             let mut weight = scale;
             match self.view.surface.fresnel {
                 Fresnel::None => {}
@@ -156,15 +147,18 @@ impl Rows<'_> {
                 }
             }
             for k in 0..N {
-                self.weight[(at + k) * self.channels + c] = if valid[k] { weight[k] } else { 0.0 };
+                weights[k * channels + c] = if valid[k] { weight[k] } else { 0.0 };
             }
         }
+        let (mut wi, mut lobe) = ([Direction::default(); N], [Lobe::NONE; N]);
         for k in 0..N {
-            let wi = Direction::new(x[k], y[k], z[k]);
-            self.wi[at + k] = if valid[k] { wi } else { Direction::default() };
-            self.pdf[at + k] = if valid[k] { pdf[k] } else { 0.0 };
-            self.lobe[at + k] = if valid[k] { Lobe::GLOSSY_REFLECTION } else { Lobe::NONE };
+            wi[k] = if valid[k] { Direction::new(x[k], y[k], z[k]) } else { Direction::default() };
+            pdf[k] = if valid[k] { pdf[k] } else { 0.0 };
+            lobe[k] = if valid[k] { Lobe::GLOSSY_REFLECTION } else { Lobe::NONE };
         }
+        self.out.wi.extend_from_slice(&wi);
+        self.out.pdf.extend_from_slice(&pdf);
+        self.out.lobe.extend_from_slice(&lobe);
     }
 }
 
