@@ -56,7 +56,9 @@ impl Check for Mis {
                 let (by_sampler, var_sampler) = sampler.moments(c);
                 let (by_cosine, var_cosine) = cosine.moments(c);
                 let balanced = integrals.largest_balanced;
-                let bound = (balanced.max(sampler.largest.0) / n).max(balanced.max(cosine.largest.0) / m);
+                // Of a draw of the cosine the balanced value is that times m/n.
+                let bound = balanced.max(sampler.largest.0) / n;
+                let bound = bound.max(cosine.largest.0 / m);
                 Mean {
                     expected,
                     error,

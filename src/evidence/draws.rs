@@ -176,7 +176,9 @@ pub struct Draws {
 }
 
 /// The cosine distribution that MIS is tried with, over the sides where light
-/// may leave: density per unit of cos θ, towards the front and the back.
+/// may leave, by the part 1/[`PER_LIGHT`] of the sampler's draws that are drawn from it,
+/// as the balance heuristic counts densities (Veach and Guibas 1995, eq. 10): per unit of
+/// cos θ, towards the front and the back.
 #[derive(Clone, Copy, Debug)]
 pub struct CosineDensity {
     front: f64,
@@ -187,12 +189,12 @@ impl CosineDensity {
     /// For the claims of a case.
     pub fn new(setup: &Setup) -> Self {
         let sides = f64::from(u8::from(setup.claims.reflective) + u8::from(setup.claims.transmissive));
-        let side = |claimed: bool| if claimed { 1.0 / (PI * sides) } else { 0.0 };
+        let side = |claimed: bool| if claimed { 1.0 / (PI * sides * PER_LIGHT as f64) } else { 0.0 };
         let (same, other) = (side(setup.claims.reflective), side(setup.claims.transmissive));
         if setup.wo.z > 0.0 { Self { front: same, back: other } } else { Self { front: other, back: same } }
     }
 
-    /// The density at `wi` in sr⁻¹.
+    /// The density at `wi` in sr⁻¹, for each draw of the sampler.
     #[inline(always)]
     pub fn at(&self, wi: Direction) -> f64 {
         if wi.z > 0.0 { self.front * wi.z } else { -self.back * wi.z }
@@ -386,7 +388,7 @@ impl Draws {
             meter.eval(setup.wo, lights, setup.transport, value)?;
             meter.pdf(setup.wo, lights, setup.transport, density)?;
             let factor =
-                |(p, wi): (&f64, &Direction)| wi.abs_cos_theta() / (p + cosine.at(*wi));
+                |(p, wi): (&f64, &Direction)| wi.abs_cos_theta() / (PER_LIGHT as f64 * (p + cosine.at(*wi)));
             balance.clear();
             balance.extend(density.iter().zip(lights.iter()).map(factor));
             scale(value, channels, balance);
