@@ -5,6 +5,7 @@ use super::microfacet::half_vector;
 use super::{fresnel, mixture};
 use crate::bsdf::{Bsdf, Description, Direction, Lobe, Sample, Spectrum, Transport};
 use crate::registry::Model;
+use crate::sphere::sin_cos_turns;
 use std::f64::consts::{PI, TAU};
 
 /// On the front side, with the half vector h, Schlick's F from rs, and e(φh) = nu
@@ -65,7 +66,7 @@ impl AshikhminShirley {
     /// tan(π u/2)), quadrant by quadrant, is the azimuth of a stretched circle.
     #[inline]
     fn half(&self, u: &[f64]) -> Direction {
-        let (y, x) = (TAU * u[1]).sin_cos();
+        let (y, x) = sin_cos_turns(u[1]);
         let (x, y) = (x / (self.nu + 1.0).sqrt(), y / (self.nv + 1.0).sqrt());
         let r2 = x * x + y * y;
         let exponent = (self.nu * x * x + self.nv * y * y) / r2;

@@ -1,6 +1,7 @@
 //! Linearly transformed cosines, clipped to the upper hemisphere.
 
 use crate::bsdf::Direction;
+use crate::sphere::sin_cos_turns;
 use std::f64::consts::PI;
 
 /// Directions M w/|M w| of the upper hemisphere, with M the matrix of the rows
@@ -54,7 +55,7 @@ impl ClippedCosine {
     #[inline]
     pub(super) fn sample(&self, u: &[f64]) -> Direction {
         let r = u[0].sqrt();
-        let (sin, cos) = (2.0 * PI * u[1]).sin_cos();
+        let (sin, cos) = sin_cos_turns(u[1]);
         let (x, y) = (r * cos, r * sin);
         // Chords of the disc shrink to what is kept of them, on the side of −x.
         let chord = (1.0 - y * y).max(0.0).sqrt();

@@ -3,7 +3,8 @@
 //! model for physically based rendering*, report CW 197, K.U. Leuven, 1994).
 
 use crate::bsdf::Direction;
-use std::f64::consts::{PI, TAU};
+use crate::sphere::sin_cos_turns;
+use std::f64::consts::TAU;
 
 /// Density (n + 1)/2π cosⁿα per steradian over the hemisphere about the axis,
 /// `cos` = cos α; 0 on the other one.
@@ -24,7 +25,7 @@ pub(super) fn sample(axis: Direction, n: f64, u: &[f64]) -> Direction {
     let log = (-u[0]).ln_1p() / (n + 1.0);
     // sin²α = 1 − cos²α without cancellation in narrow lobes.
     let (cos, sin) = (log.exp(), (-(2.0 * log).exp_m1()).sqrt());
-    let (y, x) = (2.0 * PI * u[1]).sin_cos();
+    let (y, x) = sin_cos_turns(u[1]);
     let (s, t) = tangents(axis);
     s * (sin * x) + t * (sin * y) + axis * cos
 }

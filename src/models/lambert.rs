@@ -2,6 +2,7 @@
 
 use crate::bsdf::{Bsdf, Description, Direction, Lobe, Sample, Spectrum, Transport};
 use crate::registry::{Model, Parameters};
+use crate::sphere::sin_cos_turns;
 use std::f64::consts::PI;
 
 /// A density of directions over the upper hemisphere, whatever the material.
@@ -69,7 +70,7 @@ impl Lambert {
 /// method over the polar map of the disc.
 pub(crate) fn sample_cosine(u: &[f64]) -> Direction {
     let r = u[0].sqrt();
-    let (sin, cos) = (2.0 * PI * u[1]).sin_cos();
+    let (sin, cos) = sin_cos_turns(u[1]);
     Direction::new(r * cos, r * sin, (1.0 - u[0]).sqrt())
 }
 
@@ -78,7 +79,7 @@ pub(crate) fn sample_uniform(u: &[f64]) -> Direction {
     // z in (0, 1], so that u = 0 does not touch the horizon.
     let z = 1.0 - u[0];
     let r = (u[0] * (1.0 + z)).sqrt();
-    let (sin, cos) = (2.0 * PI * u[1]).sin_cos();
+    let (sin, cos) = sin_cos_turns(u[1]);
     Direction::new(r * cos, r * sin, z)
 }
 

@@ -80,7 +80,7 @@ pub(super) fn sin_cos_octants(x: f64) -> (f64, f64) {
 #[inline(always)]
 pub fn sin_cos_turns(x: f64) -> (f64, f64) {
     // The nearest quarter turn, and what is left of it, both exact.
-    let quarter = (4.0 * x + 0.5).floor();
+    let quarter = f64::from((4.0 * x + 0.5) as i32);
     let (sin, cos) = sin_cos_octants(2.0 * (4.0 * x - quarter));
     let crossed = (quarter == 1.0) | (quarter == 3.0);
     let (sin, cos) = if crossed { (cos, sin) } else { (sin, cos) };

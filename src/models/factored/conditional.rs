@@ -2,6 +2,7 @@
 
 use super::{FactoredDensity, Grid, bezier};
 use crate::bsdf::Direction;
+use crate::sphere::sin_cos_turns;
 use std::f64::consts::{FRAC_1_PI, TAU};
 
 /// p(wi | wo) on the front side.
@@ -53,7 +54,7 @@ impl<'a> Conditional<'a> {
             return None;
         }
         if u[0] < self.cosine {
-            let (sin, cos) = (TAU * u[2]).sin_cos();
+            let (sin, cos) = sin_cos_turns(u[2]);
             let r = u[1].sqrt();
             return Some(Direction::new(r * cos, r * sin, (1.0 - u[1]).sqrt()));
         }

@@ -2,6 +2,7 @@
 
 use super::Roughness;
 use crate::bsdf::Direction;
+use crate::sphere::sin_cos_turns;
 use std::f64::consts::PI;
 use std::sync::LazyLock;
 
@@ -37,7 +38,7 @@ impl Beckmann {
     /// A normal with density D cos θ (Walter et al. 2007, eq. 28).
     pub fn sample(&self, u: &[f64]) -> Direction {
         let r = (-(-u[0]).ln_1p()).sqrt();
-        let (sin, cos) = (2.0 * PI * u[1]).sin_cos();
+        let (sin, cos) = sin_cos_turns(u[1]);
         self.alpha.scale(Direction::new(r * cos, r * sin, 1.0)).normalized()
     }
 

@@ -36,7 +36,7 @@ impl Ggx {
     #[inline]
     pub fn sample(&self, u: &[f64]) -> Direction {
         let r = u[0].sqrt();
-        let (sin, cos) = (2.0 * PI * u[1]).sin_cos();
+        let (sin, cos) = sin_cos_turns(u[1]);
         self.alpha.scale(Direction::new(r * cos, r * sin, (1.0 - u[0]).sqrt())).normalized()
     }
 

@@ -4,6 +4,7 @@ use super::{Distribution, Fresnel, GgxLoss, Masking, NormalSampling, Roughness, 
 use crate::bsdf::{Bsdf, Description, Direction, Lobe, Sample, Spectrum, Transport};
 use crate::models::{Metal, mixture};
 use crate::registry::{Model, Parameters, Role};
+use crate::sphere::sin_cos_turns;
 use std::f64::consts::PI;
 use std::sync::Arc;
 
@@ -149,7 +150,7 @@ impl Bsdf for GgxMultiscatter {
         let (wi, single, density, lobe) = if chosen == 0 {
             // From the normal down to the horizon.
             let z = self.loss.sample(1.0 - first);
-            let (sin, cos) = (2.0 * PI * u[1]).sin_cos();
+            let (sin, cos) = sin_cos_turns(u[1]);
             let r = ((1.0 - z) * (1.0 + z)).sqrt();
             let wi = Direction::new(r * cos, r * sin, z);
             let single = Bsdf::eval(&self.single, wo, wi, transport);

@@ -1,7 +1,8 @@
 //! Burley's distribution of normals with the longest tail.
 
 use crate::bsdf::Direction;
-use std::f64::consts::{PI, TAU};
+use crate::sphere::sin_cos_turns;
+use std::f64::consts::PI;
 
 /// Generalised Trowbridge–Reitz with exponent γ = 1; GGX has γ = 2 (B. Burley,
 /// *Physically-based shading at Disney*, SIGGRAPH 2012 course notes, appendix B):
@@ -37,7 +38,7 @@ impl Gtr1 {
         // cos²θ = (1 − (α²)^(1−u))/(1 − α²), and the sine of it without cancellation.
         let sin2 = self.alpha2 * (-u[0] * self.ln_alpha2).exp_m1() / (1.0 - self.alpha2);
         let cos2 = -((1.0 - u[0]) * self.ln_alpha2).exp_m1() / (1.0 - self.alpha2);
-        let (y, x) = (TAU * u[1]).sin_cos();
+        let (y, x) = sin_cos_turns(u[1]);
         let sin = sin2.sqrt();
         Direction::new(sin * x, sin * y, cos2.sqrt())
     }
