@@ -285,10 +285,9 @@ pub(super) fn against(
 ) -> Judgement {
     let n = draws.samples;
     let cells = [slack, 0.0].map(|slack| Cells::new(partition, masses, draws, slack));
-    let (Some(raw), Some(strict), Some(shape)) = (cells[0].raw(), cells[1].raw(), cells[1].shape()) else {
-        return Outcome::inconclusive("the integrals of pdf are not a distribution over cells").into();
-    };
-    let (raw_levels, shape_levels) = (levels(&raw), levels(&shape));
+    let undistributed = || Outcome::inconclusive("the integrals of pdf are not a distribution over cells");
+    let Some(raw) = cells[0].raw() else { return undistributed().into() };
+    let raw_levels = levels(&raw);
     let classes = along_density(partition, masses, draws);
     let z = smooth::components(&classes);
     let along = smooth::nested(&z);
@@ -312,12 +311,18 @@ pub(super) fn against(
         tests.into_iter().map(|level| (level, ln_p_of(&level))).min_by(|a, b| a.1.total_cmp(&b.1));
     let guard = guard(&raw, n, terms) - ln_depth;
     let ln_p = worst_level.map_or(0.0, |(_, ln_p)| ln_p).min(guard).min(0.0);
+    let fails = ln_p < terms.ln_tail;
+    if let (false, Some(next)) = (fails, terms.next) {
+        return Judgement::More(next);
+    }
 
+    let (Some(strict), Some(shape)) = (cells[1].raw(), cells[1].shape()) else {
+        return undistributed().into();
+    };
+    let shape_levels = levels(&shape);
     let (scale, x2, dof) = worst_level.map_or((Scale::Cells, 0.0, 0.0), |(l, _)| (l.scale, l.x2, l.dof));
     let own_effect = effect::root_d(x2, dof.max(1.0), n);
     let (shape_p, raw_p) = (least_ln_p(&shape_levels, &along), least_ln_p(&levels(&strict), &along));
-    let largest = haar_largest(&raw.haar());
-    let place = largest.map(|h| deviation(partition, &raw, &h)).unwrap_or_default();
     let outcome = Outcome {
         certain: false,
         effect: Some(Effect::interval("RMS relative cell error √D", own_effect, terms.tolerance)),
@@ -326,7 +331,9 @@ pub(super) fn against(
         samples: n,
         ..Outcome::new(Verdict::Pass, String::new())
     };
-    if ln_p < terms.ln_tail {
+    if fails {
+        let largest = haar_largest(&raw.haar());
+        let place = largest.map(|h| deviation(partition, &raw, &h)).unwrap_or_default();
         let worst = worst_cell(evidence, partition, &raw);
         let strict = format!("at ε = 0, p = {} raw and {} for the shape alone", power(raw_p), power(shape_p));
         let seen = match scale {
@@ -340,9 +347,6 @@ pub(super) fn against(
             percent(own_effect.2),
         );
         return Outcome { verdict: Verdict::Fail, message, worst, ..outcome }.into();
-    }
-    if terms.next.is_some() {
-        return terms.settle(outcome);
     }
     // The depth whose limit is best, and that limit: the error it is told for is one that cells
     // see, not only one that follows the density.
