@@ -21,6 +21,7 @@ use std::process::ExitCode;
 /// }
 /// ```
 pub fn main(registry: Registry) -> ExitCode {
+    keep_memory();
     let args = match Args::try_parse() {
         Ok(args) => args,
         Err(e) => {
@@ -39,6 +40,29 @@ pub fn main(registry: Registry) -> ExitCode {
         Err(e) => {
             tell(voice.error_page(&e).trim_end());
             e.exit().into()
+        }
+    }
+}
+
+/// Each case asks for the same large buffers again: they are kept, where glibc would give
+/// them back to the system, and take a fault for each page. That is a twentieth of a short
+/// process.
+fn keep_memory() {
+    #[cfg(all(target_os = "linux", target_env = "gnu"))]
+    {
+        const MIB: i32 = 1 << 20;
+        // The most that it takes for the second is half of a thread's heap.
+        let wishes = [
+            (libc::M_TRIM_THRESHOLD, 1024 * MIB),
+            (libc::M_MMAP_THRESHOLD, 32 * MIB),
+            (libc::M_TOP_PAD, MIB),
+        ];
+        for (parameter, value) in wishes {
+            // SAFETY: it takes any two numbers, and refuses what it does not know.
+            #[expect(unsafe_code, reason = "libc has no safe form of it")]
+            unsafe {
+                libc::mallopt(parameter, value)
+            };
         }
     }
 }
