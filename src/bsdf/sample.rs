@@ -135,10 +135,11 @@ impl Samples {
         self.lobe.is_empty()
     }
 
-    /// Appends one draw. The weight must have `self.channels` values.
+    /// Appends one draw; no sample where it has no lobe. The weight must have
+    /// `self.channels` values.
     #[inline]
     pub fn push(&mut self, sample: Option<&Sample>) {
-        match sample {
+        match sample.filter(|s| s.lobe.is_valid()) {
             Some(s) => {
                 self.wi.push(s.wi);
                 // A copy of so few would be a call.

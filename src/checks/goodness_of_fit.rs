@@ -52,7 +52,8 @@ impl Cells {
     fn new(partition: &Partition, masses: &[f64], draws: &Draws, slack: f64) -> Self {
         let inner_mass = partition.sum_up(masses);
         let inner_counts = partition.sum_up(&draws.counts);
-        let without = draws.samples - inner_counts[0];
+        // A block that failed half way may be counted already.
+        let without = draws.samples.saturating_sub(inner_counts[0]);
         let told = inner_mass[0];
         let met = without as f64 / draws.samples.max(1) as f64;
         let rest = met.clamp((1.0 - told - slack).max(0.0), (1.0 - told + slack).max(0.0));
@@ -284,9 +285,9 @@ pub(super) fn against(
     terms: &Terms,
 ) -> Judgement {
     let n = draws.samples;
-    let cells = [slack, 0.0].map(|slack| Cells::new(partition, masses, draws, slack));
+    let cells = Cells::new(partition, masses, draws, slack);
     let undistributed = || Outcome::inconclusive("the integrals of pdf are not a distribution over cells");
-    let Some(raw) = cells[0].raw() else { return undistributed().into() };
+    let Some(raw) = cells.raw() else { return undistributed().into() };
     let raw_levels = levels(&raw);
     let classes = along_density(partition, masses, draws);
     let z = smooth::components(&classes);
@@ -295,7 +296,7 @@ pub(super) fn against(
     let lambda = n as f64 * terms.tolerance * terms.tolerance;
     // With a mass P told and Q met, D of the shape is at most P/Q² times D of all draws, by which
     // its n·Q samples are multiplied.
-    let lambda_of_shape = lambda * cells[0].mass[OUTER] * n as f64 / draws.continuous().max(1) as f64;
+    let lambda_of_shape = lambda * cells.mass[OUTER] * n as f64 / draws.continuous().max(1) as f64;
     let smallest = MIN_EXPECTED / n as f64;
     let ln_p_of = |level: &Level| {
         let &Level { scale, x2, dof, ln_part } = level;
@@ -316,7 +317,8 @@ pub(super) fn against(
         return Judgement::More(next);
     }
 
-    let (Some(strict), Some(shape)) = (cells[1].raw(), cells[1].shape()) else {
+    let strict = Cells::new(partition, masses, draws, 0.0);
+    let (Some(strict), Some(shape)) = (strict.raw(), strict.shape()) else {
         return undistributed().into();
     };
     let shape_levels = levels(&shape);

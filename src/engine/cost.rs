@@ -8,15 +8,16 @@ use std::sync::atomic::AtomicBool;
 use std::time::Instant;
 
 /// Directions that a case of the default suite evaluates besides its draws (medians of
-/// reports/seed: 121 k, 194 k, and 302 k samples of which 262 k are draws).
-const EVALS: f64 = 121e3;
-const PDFS: f64 = 194e3;
-const SAMPLES: f64 = 40e3;
+/// reports/seed: 93 k, 153 k and 285 k samples, of which 262 k are draws, and 33 k of the
+/// others are matched with them).
+const EVALS: f64 = 60e3;
+const PDFS: f64 = 120e3;
+const SAMPLES: f64 = 23e3;
 
-/// Seconds that gonio itself spends on a draw (README, "Cost": 27 ns), and on the rest of
-/// a case. Guesses: what cases really take corrects them all at once.
-const HARNESS_DRAW: f64 = 30e-9;
-const HARNESS_CASE: f64 = 20e-3;
+/// Seconds that gonio itself spends on a draw, and on the rest of such a case. Guesses:
+/// what cases really take corrects them all at once.
+const HARNESS_DRAW: f64 = 20e-9;
+const HARNESS_CASE: f64 = 10e-3;
 
 /// One in so many draws is matched by one of the cosine, with eval and pdf.
 const PER_LIGHT: f64 = 8.0;
@@ -30,7 +31,7 @@ const LONG: f64 = 1e-3;
 /// Seconds of one thread.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct Cost {
-    /// Whatever the number of draws.
+    /// Besides draws; nearly the same for any number of them.
     pub fixed: f64,
     /// A draw.
     pub draw: f64,

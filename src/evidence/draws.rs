@@ -175,10 +175,10 @@ pub struct Draws {
     pub log_weights: LogWeights,
 }
 
-/// The cosine distribution that MIS is tried with, over the sides where light
-/// may leave, by the part 1/[`PER_LIGHT`] of the sampler's draws that are drawn from it,
-/// as the balance heuristic counts densities (Veach and Guibas 1995, eq. 10): per unit of
-/// cos θ, towards the front and the back.
+/// The cosine distribution that MIS is tried with, over the sides where light may leave,
+/// as the balance heuristic counts it (Veach and Guibas 1995, eq. 10): its density times its
+/// draws over the sampler's, 1/[`PER_LIGHT`]; per unit of cos θ, towards the front and the
+/// back.
 #[derive(Clone, Copy, Debug)]
 pub struct CosineDensity {
     front: f64,
@@ -194,7 +194,7 @@ impl CosineDensity {
         if setup.wo.z > 0.0 { Self { front: same, back: other } } else { Self { front: other, back: same } }
     }
 
-    /// The density at `wi` in sr⁻¹, for each draw of the sampler.
+    /// The density at `wi` in sr⁻¹ times draws over the sampler's.
     #[inline(always)]
     pub fn at(&self, wi: Direction) -> f64 {
         if wi.z > 0.0 { self.front * wi.z } else { -self.back * wi.z }
@@ -219,7 +219,7 @@ fn cosine_direction(setup: &Setup, u: [f64; 3]) -> Direction {
 struct LeafCell {
     /// Its coarse cell of the table of serial pairs.
     serial: u8,
-    /// Its mass is exactly 0.
+    /// There is a pdf, and its mass there is exactly 0.
     empty: bool,
 }
 
@@ -283,7 +283,8 @@ impl Draws {
         let mut weights = (self.attempt == 0).then(WeightTable::new);
         let none = self.none;
         let serial = serial_cells(partition);
-        let cell = |(serial, pdf): (u8, &f64)| LeafCell { serial, empty: *pdf == 0.0 };
+        let has_pdf = meter.description.has.pdf;
+        let cell = |(serial, pdf): (u8, &f64)| LeafCell { serial, empty: has_pdf && *pdf == 0.0 };
         let cells: Vec<LeafCell> = serial.into_iter().zip(pdf_of_leaf).map(cell).collect();
         let mut drawn = Ok(());
         while self.samples < samples && drawn.is_ok() {
@@ -327,7 +328,6 @@ impl Draws {
         }
 
         let row = |k: usize| &u[k * meter.dimensions()..(k + 1) * meter.dimensions()];
-        let has_pdf = meter.description.has.pdf;
         serial.resize(samples.len(), 0);
         let (mut continuous, mut valid) = (0, 0);
         unusual.clear();
@@ -352,7 +352,7 @@ impl Draws {
                     *share = 1.0;
                 }
                 self.add_discrete(setup, wi, lobe, samples.pdf[k], samples.weight_of(k));
-            } else if has_pdf && self.zero_pdf.broken < ENOUGH {
+            } else if self.zero_pdf.broken < ENOUGH {
                 let there = density_near(meter, setup, wi)?;
                 self.zero_pdf.look(if there > 0.0 { 0.0 } else { 1.0 }, || {
                     let place = Place::pair(setup.wo, wi).drawn_by(row(k));

@@ -48,7 +48,7 @@ pub struct Integrals {
     pub lost: f64,
     /// Largest f·|cos θi|/pdf met.
     pub largest_weight: f64,
-    /// Largest f·|cos θi|/(pdf + cosine density) met, the latter by its share of draws.
+    /// Largest f·|cos θi|/(pdf + cosine density) met, the latter as MIS counts it.
     pub largest_balanced: f64,
     /// Whether the cubature of pdf reached its goals.
     pub converged: bool,

@@ -7,7 +7,8 @@ use crate::statistics::streams::StreamKey;
 /// Leaves of a partition: for fewer draws fewer, since what costs by the leaf would cost
 /// more than the draws, and a leaf of 512 is told to 4 % at best. 256 leaves still see
 /// where on a lobe samples are off.
-const LEAVES: std::ops::RangeInclusive<u64> = 256..=1024;
+const FEWEST_LEAVES: u64 = 256;
+const MOST_LEAVES: u64 = 1024;
 const DRAWS_PER_LEAF: u64 = 512;
 
 /// Points of the pilot for each of them: the median of two leaves is off by an eighth of one.
@@ -37,7 +38,7 @@ pub struct Setup {
 impl Setup {
     /// Leaves that a partition for these draws has, about.
     pub fn leaves(&self) -> usize {
-        (self.draws / DRAWS_PER_LEAF).clamp(*LEAVES.start(), *LEAVES.end()) as usize
+        (self.draws / DRAWS_PER_LEAF).clamp(FEWEST_LEAVES, MOST_LEAVES) as usize
     }
 
     /// Blocks of pilot draws.

@@ -24,7 +24,7 @@ pub(super) fn mutants() -> Vec<Mutant> {
         .strength(0.02, 1.0, "pdf is 1 + epsilon times too large")
         .varied(&[("alpha", 0.05, 0.8)])
         .must_fail(&["goodness-of-fit", "normalization", "albedo", "jacobian"])
-        // The balance heuristic hides most of a constant.
+        // The smallest strengths are below what it sees.
         .may_fail(&["mis"]),
         Mutant::new("lambert-pdf-without-pi", "lambert", "pdf() lacks 1/π", |p, _| {
             Altered::of(Lambert::declared(p)?).pdf_times(|_, _, _| PI).made()

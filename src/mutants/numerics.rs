@@ -271,10 +271,9 @@ fn imprecise() -> Vec<Mutant> {
         )
         .source("dspbr-pt c3c3eb8")
         .varied(&[("alpha", 0.07, 0.12)])
-        .must_fail(&["goodness-of-fit", "normalization", "albedo"])
-        // Few points of jacobian may lie in the hole, and the balance heuristic hides
-        // half of it.
-        .may_fail(&["jacobian", "mis"]),
+        .must_fail(&["goodness-of-fit", "normalization", "albedo", "mis"])
+        // Few of its points may lie in the hole.
+        .may_fail(&["jacobian"]),
         Mutant::new(
             "cancelling-distribution",
             "torrance-sparrow:alpha=0.001",
