@@ -26,5 +26,5 @@ pub use fresnel::{FresnelFunction, Interface};
 pub use normals::{NormalDistribution, Normals};
 pub use sample::{Lobe, Sample, Samples};
 pub use spectrum::{MAX_CHANNELS, Spectrum};
-pub(crate) use subject::one_by_one;
 pub use subject::{Bsdf, Subject, SubjectError};
+pub(crate) use subject::{each_density, each_value, one_by_one};

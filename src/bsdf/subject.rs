@@ -20,6 +20,22 @@ pub trait Bsdf: Send + Sync {
     fn pdf(&self, wo: Direction, wi: Direction, transport: Transport) -> f64;
     /// Draws a direction from `u` in [0,1)^d; `None` where there is no sample.
     fn sample(&self, wo: Direction, u: &[f64], transport: Transport) -> Option<Sample>;
+    /// Values for each row of `wi` into `out` (row-major, `wi.len()` × channels). A model
+    /// that has many at once faster than one by one gives them here; each must be what
+    /// [`eval`](Self::eval) gives.
+    fn eval_rows(
+        &self,
+        wo: Direction,
+        wi: &[Direction],
+        transport: Transport,
+        out: &mut [f64],
+    ) -> Result<(), SubjectError> {
+        each_value(self, wo, wi, transport, out)
+    }
+    /// Densities for each row of `wi`, likewise.
+    fn pdf_rows(&self, wo: Direction, wi: &[Direction], transport: Transport, out: &mut [f64]) {
+        each_density(self, wo, wi, transport, out);
+    }
     /// Draws for each row of `u` into `out`, which comes cleared. A model that draws many
     /// at once faster than one by one does it here; each must be what
     /// [`sample`](Self::sample) gives.
@@ -134,6 +150,41 @@ pub enum SubjectError {
     Broken(String),
 }
 
+/// Values for each row of `wi` by [`Bsdf::eval`].
+pub(crate) fn each_value<B: Bsdf + ?Sized>(
+    bsdf: &B,
+    wo: Direction,
+    wi: &[Direction],
+    transport: Transport,
+    out: &mut [f64],
+) -> Result<(), SubjectError> {
+    if wi.is_empty() {
+        return Ok(());
+    }
+    let channels = out.len() / wi.len();
+    for (wi, row) in wi.iter().zip(out.chunks_exact_mut(channels)) {
+        let value = bsdf.eval(wo, *wi, transport);
+        if value.len() != channels {
+            return Err(SubjectError::WrongLength { function: "eval", expected: channels, got: value.len() });
+        }
+        row.copy_from_slice(&value);
+    }
+    Ok(())
+}
+
+/// Densities for each row of `wi` by [`Bsdf::pdf`].
+pub(crate) fn each_density<B: Bsdf + ?Sized>(
+    bsdf: &B,
+    wo: Direction,
+    wi: &[Direction],
+    transport: Transport,
+    out: &mut [f64],
+) {
+    for (wi, p) in wi.iter().zip(out) {
+        *p = bsdf.pdf(wo, *wi, transport);
+    }
+}
+
 /// Draws for each row of `u` by [`Bsdf::sample`].
 pub(crate) fn one_by_one<B: Bsdf + ?Sized>(
     bsdf: &B,
@@ -171,22 +222,7 @@ impl<B: Bsdf> Subject for B {
         transport: Transport,
         out: &mut [f64],
     ) -> Result<(), SubjectError> {
-        if wi.is_empty() {
-            return Ok(());
-        }
-        let channels = out.len() / wi.len();
-        for (wi, row) in wi.iter().zip(out.chunks_exact_mut(channels)) {
-            let value = Bsdf::eval(self, wo, *wi, transport);
-            if value.len() != channels {
-                return Err(SubjectError::WrongLength {
-                    function: "eval",
-                    expected: channels,
-                    got: value.len(),
-                });
-            }
-            row.copy_from_slice(&value);
-        }
-        Ok(())
+        self.eval_rows(wo, wi, transport, out)
     }
 
     fn pdf(
@@ -196,9 +232,7 @@ impl<B: Bsdf> Subject for B {
         transport: Transport,
         out: &mut [f64],
     ) -> Result<(), SubjectError> {
-        for (wi, p) in wi.iter().zip(out) {
-            *p = Bsdf::pdf(self, wo, *wi, transport);
-        }
+        self.pdf_rows(wo, wi, transport, out);
         Ok(())
     }
 

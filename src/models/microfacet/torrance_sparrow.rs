@@ -3,7 +3,8 @@
 use super::visible_ggx::VisibleGgx;
 use super::{Distribution, Roughness, half_vector, v_cavity};
 use crate::bsdf::{
-    Bsdf, Description, Direction, Lobe, Sample, Samples, Spectrum, SubjectError, Transport, one_by_one,
+    Bsdf, Description, Direction, Lobe, Sample, Samples, Spectrum, SubjectError, Transport, each_density,
+    each_value, one_by_one,
 };
 use crate::models::{Metal, fresnel};
 use crate::registry::{Model, Parameters, Role};
@@ -247,6 +248,27 @@ impl Bsdf for TorranceSparrow {
         valid.then_some(Sample { wi, weight, pdf, lobe: Lobe::GLOSSY_REFLECTION })
     }
 
+    fn eval_rows(
+        &self,
+        wo: Direction,
+        wi: &[Direction],
+        transport: Transport,
+        out: &mut [f64],
+    ) -> Result<(), SubjectError> {
+        if let Some(view) = VisibleGgx::of(self, wo).filter(|_| out.len() == wi.len() * self.channels()) {
+            view.eval_rows(wi, out);
+            return Ok(());
+        }
+        each_value(self, wo, wi, transport, out)
+    }
+
+    fn pdf_rows(&self, wo: Direction, wi: &[Direction], transport: Transport, out: &mut [f64]) {
+        match VisibleGgx::of(self, wo) {
+            Some(view) => view.pdf_rows(wi, out),
+            None => each_density(self, wo, wi, transport, out),
+        }
+    }
+
     fn sample_rows(
         &self,
         wo: Direction,
@@ -352,6 +374,29 @@ mod tests {
                     }
                     assert_eq!(rows.lobe, each.lobe);
                     assert_eq!((rows.wi, rows.weight, rows.pdf), (each.wi, each.weight, each.pdf));
+                }
+            }
+        }
+    }
+
+    /// Likewise for values and densities, off the support too.
+    #[test]
+    fn rows_are_what_each_direction_gives() {
+        let mut random = Xoshiro256PlusPlus::seed_from_u64(9);
+        let mut uniform = || (random.next_u64() >> 11) as f64 * f64::EPSILON / 2.0;
+        let grazing = Direction::new(1.0, 0.0, 1e-300);
+        for model in all() {
+            for wo in [Direction::NORMAL, Direction::from_angles(1.2, 0.7), grazing, -Direction::NORMAL] {
+                let mut wi = vec![wo, -wo, wo.mirrored(), grazing, grazing.mirrored(), Direction::default()];
+                wi.extend((0..20).map(|_| Direction::from_angles(1.7 * uniform(), 6.3 * uniform())));
+                let channels = model.channels();
+                let (mut value, mut pdf) = (vec![f64::NAN; wi.len() * channels], vec![f64::NAN; wi.len()]);
+                model.eval_rows(wo, &wi, R, &mut value).unwrap();
+                model.pdf_rows(wo, &wi, R, &mut pdf);
+                for (k, wi) in wi.iter().enumerate() {
+                    let row = &value[k * channels..][..channels];
+                    assert_eq!(row, &*model.eval(wo, *wi, R), "{model:?} {wo:?} {wi:?}");
+                    assert_eq!(pdf[k], model.pdf(wo, *wi, R), "{model:?} {wo:?} {wi:?}");
                 }
             }
         }

@@ -1,4 +1,4 @@
-//! Many draws at once from GGX's visible normals.
+//! Many at once of GGX whose visible normals are drawn: values, densities and draws.
 
 use super::ggx::{Ggx, VisibleNormals};
 use super::{Distribution, Fresnel, Masking, NormalSampling, TorranceSparrow};
@@ -83,6 +83,52 @@ impl<'a> VisibleGgx<'a> {
         is_valid(drawn.om, drawn.wi.z, drawn.pdf, weight[0]).then_some((drawn.wi, weight, drawn.pdf))
     }
 
+    /// wo·m of the facet that reflects `wi` to wo, and its D; 0 where there is none.
+    #[inline(always)]
+    fn facet(&self, wi: Direction) -> (f64, f64) {
+        let sum = self.wo + wi;
+        let length = sum.length();
+        let d = self.ggx.density(sum * (1.0 / length));
+        (0.5 * length, if (wi.z > 0.0) & (length > 0.0) { d } else { 0.0 })
+    }
+
+    /// pdf at each of `wi`.
+    pub(super) fn pdf_rows(&self, wi: &[Direction], out: &mut [f64]) {
+        pulp::Arch::new().dispatch(Densities { view: self, wi, out });
+    }
+
+    /// f at each of `wi`, by channel.
+    pub(super) fn eval_rows(&self, wi: &[Direction], out: &mut [f64]) {
+        let channels = self.surface.channels();
+        pulp::Arch::new().dispatch(Values { view: self, wi, channels, out });
+    }
+
+    /// What facets of these wo·m reflect of `scale` in a channel.
+    #[inline(always)]
+    fn reflected<const N: usize>(&self, channel: usize, om: &[f64; N], scale: &[f64; N]) -> [f64; N] {
+        let mut weight = *scale;
+        match self.surface.fresnel {
+            Fresnel::None => {}
+            Fresnel::Conductor(metal) => {
+                let (eta, absorption) = metal.index()[channel];
+                for k in 0..N {
+                    weight[k] *= fresnel::conductor(om[k].min(1.0), eta, absorption);
+                }
+            }
+            Fresnel::Schlick(f0) => {
+                for k in 0..N {
+                    weight[k] *= fresnel::schlick(om[k].min(1.0), f0);
+                }
+            }
+            Fresnel::Dielectric(eta) => {
+                for k in 0..N {
+                    weight[k] *= fresnel::dielectric(om[k].min(1.0), eta);
+                }
+            }
+        }
+        weight
+    }
+
     /// A draw for each pair of `u`, appended to `out`.
     pub(super) fn sample_rows(&self, u: &[[f64; 2]], out: &mut Samples) {
         out.wi.reserve(u.len());
@@ -121,26 +167,7 @@ impl Rows<'_> {
         let channels = self.out.channels;
         let weights = &mut self.out.weight[self.from + at * channels..][..N * channels];
         for c in 0..channels {
-            let mut weight = scale;
-            match self.view.surface.fresnel {
-                Fresnel::None => {}
-                Fresnel::Conductor(metal) => {
-                    let (eta, absorption) = metal.index()[c];
-                    for k in 0..N {
-                        weight[k] *= fresnel::conductor(om[k].min(1.0), eta, absorption);
-                    }
-                }
-                Fresnel::Schlick(f0) => {
-                    for k in 0..N {
-                        weight[k] *= fresnel::schlick(om[k].min(1.0), f0);
-                    }
-                }
-                Fresnel::Dielectric(eta) => {
-                    for k in 0..N {
-                        weight[k] *= fresnel::dielectric(om[k].min(1.0), eta);
-                    }
-                }
-            }
+            let weight = self.view.reflected(c, &om, &scale);
             if c == 0 {
                 for k in 0..N {
                     valid[k] = is_valid(om[k], z[k], pdf[k], weight[k]);
@@ -173,6 +200,86 @@ impl pulp::NullaryFnOnce for Rows<'_> {
         }
         for (k, u) in rest.iter().enumerate() {
             self.fill(many.len() * LANES + k, &[*u]);
+        }
+    }
+}
+
+/// Arguments of [`VisibleGgx::pdf_rows`].
+struct Densities<'a> {
+    view: &'a VisibleGgx<'a>,
+    wi: &'a [Direction],
+    out: &'a mut [f64],
+}
+
+impl Densities<'_> {
+    #[inline(always)]
+    fn of<const N: usize>(&self, wi: &[Direction; N]) -> [f64; N] {
+        let mut pdf = [0.0; N];
+        for k in 0..N {
+            let (_, d) = self.view.facet(wi[k]);
+            pdf[k] = if d == 0.0 { 0.0 } else { d * self.view.factor };
+        }
+        pdf
+    }
+}
+
+impl pulp::NullaryFnOnce for Densities<'_> {
+    type Output = ();
+
+    #[inline(always)]
+    fn call(mut self) {
+        let out = std::mem::take(&mut self.out);
+        let (many, rest) = self.wi.as_chunks::<LANES>();
+        let (to_many, to_rest) = out.as_chunks_mut::<LANES>();
+        for (wi, out) in many.iter().zip(to_many) {
+            *out = self.of(wi);
+        }
+        for (wi, out) in rest.iter().zip(to_rest) {
+            [*out] = self.of(&[*wi]);
+        }
+    }
+}
+
+/// Arguments of [`VisibleGgx::eval_rows`].
+struct Values<'a> {
+    view: &'a VisibleGgx<'a>,
+    wi: &'a [Direction],
+    channels: usize,
+    out: &'a mut [f64],
+}
+
+impl Values<'_> {
+    #[inline(always)]
+    fn fill<const N: usize>(&mut self, at: usize, wi: &[Direction; N]) {
+        let (view, wo) = (self.view, self.view.wo);
+        let [mut om, mut density, mut scale] = [[0.0; N]; 3];
+        for k in 0..N {
+            (om[k], density[k]) = view.facet(wi[k]);
+            let masked = view.ggx.backfacing_area(wi[k]);
+            let geometry = 0.25 / (wo.z * wi[k].z + view.masked * wi[k].z + masked * wo.z);
+            scale[k] = density[k] * geometry;
+        }
+        let out = &mut self.out[at * self.channels..][..N * self.channels];
+        for c in 0..self.channels {
+            let value = view.reflected(c, &om, &scale);
+            for k in 0..N {
+                out[k * self.channels + c] = if density[k] == 0.0 { 0.0 } else { value[k] };
+            }
+        }
+    }
+}
+
+impl pulp::NullaryFnOnce for Values<'_> {
+    type Output = ();
+
+    #[inline(always)]
+    fn call(mut self) {
+        let (many, rest) = self.wi.as_chunks::<LANES>();
+        for (chunk, wi) in many.iter().enumerate() {
+            self.fill(chunk * LANES, wi);
+        }
+        for (k, wi) in rest.iter().enumerate() {
+            self.fill(many.len() * LANES + k, &[*wi]);
         }
     }
 }
