@@ -204,6 +204,16 @@ impl pulp::NullaryFnOnce for Rows<'_> {
     }
 }
 
+/// x, y and z of each.
+#[inline(always)]
+fn coordinates<const N: usize>(directions: &[Direction; N]) -> [[f64; N]; 3] {
+    let mut all = [[0.0; N]; 3];
+    for k in 0..N {
+        (all[0][k], all[1][k], all[2][k]) = (directions[k].x, directions[k].y, directions[k].z);
+    }
+    all
+}
+
 /// Arguments of [`VisibleGgx::pdf_rows`].
 struct Densities<'a> {
     view: &'a VisibleGgx<'a>,
@@ -214,9 +224,10 @@ struct Densities<'a> {
 impl Densities<'_> {
     #[inline(always)]
     fn of<const N: usize>(&self, wi: &[Direction; N]) -> [f64; N] {
+        let [x, y, z] = coordinates(wi);
         let mut pdf = [0.0; N];
         for k in 0..N {
-            let (_, d) = self.view.facet(wi[k]);
+            let (_, d) = self.view.facet(Direction::new(x[k], y[k], z[k]));
             pdf[k] = if d == 0.0 { 0.0 } else { d * self.view.factor };
         }
         pdf
@@ -252,12 +263,13 @@ impl Values<'_> {
     #[inline(always)]
     fn fill<const N: usize>(&mut self, at: usize, wi: &[Direction; N]) {
         let (view, wo) = (self.view, self.view.wo);
+        let [x, y, z] = coordinates(wi);
         let [mut om, mut density, mut scale] = [[0.0; N]; 3];
         for k in 0..N {
-            (om[k], density[k]) = view.facet(wi[k]);
-            let masked = view.ggx.backfacing_area(wi[k]);
-            let geometry = 0.25 / (wo.z * wi[k].z + view.masked * wi[k].z + masked * wo.z);
-            scale[k] = density[k] * geometry;
+            let wi = Direction::new(x[k], y[k], z[k]);
+            (om[k], density[k]) = view.facet(wi);
+            let masked = view.ggx.backfacing_area(wi);
+            scale[k] = density[k] * (0.25 / (wo.z * wi.z + view.masked * wi.z + masked * wo.z));
         }
         let out = &mut self.out[at * self.channels..][..N * self.channels];
         for c in 0..self.channels {
