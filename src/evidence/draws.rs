@@ -89,7 +89,7 @@ impl Sums {
         for c in 0..channels {
             if channels > 1 {
                 column.clear();
-                column.extend(rows.iter().skip(c).step_by(channels));
+                column.extend(rows.chunks_exact(channels).map(|row| row[c]));
             }
             let values = if channels > 1 { &column } else { rows };
             let [sum, square, largest] = pulp::Arch::new().dispatch(|| summed(values));

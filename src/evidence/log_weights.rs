@@ -48,7 +48,7 @@ impl LogWeights {
 
 /// Weights in a row go to tables of their own: many share a bin, and each count of one
 /// waits for the one before.
-const TABLES: usize = 4;
+const TABLES: usize = 2;
 
 /// All bins, while draws are under way.
 pub(super) struct WeightTable([Box<[u64; BINS]>; TABLES]);
