@@ -8,7 +8,7 @@
 //! for what pdf() is there, never for what was counted: where it is 0, and where the
 //! rule misses its mass by far. χ² is of groups of leaves that expect enough.
 
-use super::counts::Counts;
+use super::counts::{Counts, PER_LEAF};
 use super::parts::{At, Parts};
 use crate::bsdf::{Direction, Samples, Subject, Transport};
 use crate::engine::CaseResult;
@@ -121,7 +121,7 @@ struct Leaf {
     mean: [f64; 5],
     covariance: [[f64; 5]; 5],
     /// Kept where ln x varies too much for these two to tell the integral.
-    nodes: Option<Box<[Node; 9]>>,
+    nodes: Option<Box<[Node; PER_LEAF]>>,
 }
 
 /// Variance of ln x up to which two moments do: what is left out is of the third.
@@ -135,7 +135,7 @@ struct Node {
 }
 
 impl Leaf {
-    fn new(case: usize, count: u64, nodes: [Node; 9]) -> Self {
+    fn new(case: usize, count: u64, nodes: [Node; PER_LEAF]) -> Self {
         let expected: f64 = nodes.iter().map(|n| n.expected).sum();
         let mut mean = [0.0; 5];
         let mut covariance = [[0.0; 5]; 5];
@@ -209,7 +209,7 @@ impl Pooled {
         for (leaf, count) in counts.leaves.iter().enumerate() {
             let own = counts.own_nodes(leaf);
             // The fifth node is the middle.
-            if !own.middle.same_side(wo) {
+            if !own.nodes[0].0.same_side(wo) {
                 continue;
             }
             self.counted += count;
@@ -222,7 +222,7 @@ impl Pooled {
                 let sound = ln.iter().all(|l| l.is_finite()) && expected >= 0.0 && expected.is_finite();
                 sound.then_some(Node { expected, ln })
             };
-            let mut nodes = [Node::default(); 9];
+            let mut nodes = [Node::default(); PER_LEAF];
             let known = own.nodes.into_iter().zip(&mut nodes).all(|(from, to)| {
                 let found = node(from);
                 *to = found.unwrap_or_default();

@@ -1,6 +1,6 @@
 //! Where functions are positive and should not be, or the other way round.
 
-use super::counts::CountTest;
+use super::counts::{CountTest, PER_LEAF};
 use super::explanation::{Claim, DENSITY, VAGUE};
 use super::pdf::{counts, follows};
 use super::textbook::{EQUAL, Textbook};
@@ -106,7 +106,7 @@ fn phantom(view: &View) -> Vec<Claim> {
             // Chance leaves a cell empty that expects 12 with probability 6e-6.
             if c.leaves[leaf] == 0 && n * *m > 12.0 {
                 off += *m;
-                if !view.cases[*k].wo.same_side(directions[9 * leaf + 4]) {
+                if !view.cases[*k].wo.same_side(directions[PER_LEAF * leaf]) {
                     other_side += *m;
                 }
                 *m = 0.0;
