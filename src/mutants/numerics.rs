@@ -271,9 +271,10 @@ fn imprecise() -> Vec<Mutant> {
         )
         .source("dspbr-pt c3c3eb8")
         .varied(&[("alpha", 0.07, 0.12)])
-        .must_fail(&["goodness-of-fit", "normalization", "albedo", "mis"])
-        // Few of its points may lie in the hole.
-        .may_fail(&["jacobian"]),
+        .must_fail(&["goodness-of-fit", "normalization", "albedo"])
+        // Few points of jacobian may lie in the hole, and mis is off by 0.4 to 2 %, the
+        // least of which is near what it sees of 2¹⁸ draws.
+        .may_fail(&["jacobian", "mis"]),
         Mutant::new(
             "cancelling-distribution",
             "torrance-sparrow:alpha=0.001",
