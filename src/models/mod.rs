@@ -19,6 +19,7 @@ mod interface;
 mod lafortune;
 pub(crate) mod lambert;
 mod largest_albedo;
+mod memo;
 mod metal;
 pub mod microfacet;
 pub(crate) mod mixture;

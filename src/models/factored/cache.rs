@@ -2,11 +2,8 @@
 
 use super::table::Table;
 use super::{FactoredDensity, Factorisation, Given, Grid, Parameterisation};
-use std::collections::HashMap;
-use std::sync::{Arc, LazyLock, Mutex, PoisonError};
-
-/// A few ten kilobytes each; never dropped, since suites come back to all of theirs.
-static KNOWN: LazyLock<Mutex<HashMap<[u8; 32], Arc<FactoredDensity>>>> = LazyLock::new(Mutex::default);
+use crate::models::memo::Memo;
+use std::sync::Arc;
 
 /// The factorisation of a table, made once in a process.
 pub fn factored(
@@ -16,6 +13,7 @@ pub fn factored(
     isotropic: bool,
     by: Factorisation,
 ) -> Arc<FactoredDensity> {
+    static KNOWN: Memo<[u8; 32], FactoredDensity> = Memo::new();
     let mut hash = blake3::Hasher::new();
     let half_angle = grid.over == Parameterisation::HalfAngle;
     let shape = [grid.t.intervals(), grid.phi.intervals(), given.len(), by.outer, by.inner].map(|n| n as u64);
@@ -25,11 +23,5 @@ pub fn factored(
     for value in &table.sites.values {
         hash.update(&value.to_le_bytes());
     }
-    let key = *hash.finalize().as_bytes();
-    let lock = || KNOWN.lock().unwrap_or_else(PoisonError::into_inner);
-    if let Some(known) = lock().get(&key) {
-        return known.clone();
-    }
-    let made = Arc::new(FactoredDensity::new(table, grid, given, isotropic, by));
-    lock().entry(key).or_insert(made).clone()
+    KNOWN.of(*hash.finalize().as_bytes(), || FactoredDensity::new(table, grid, given, isotropic, by))
 }

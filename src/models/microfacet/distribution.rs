@@ -2,6 +2,8 @@
 
 use super::{Beckmann, Gaussian, Ggx, Roughness};
 use crate::bsdf::Direction;
+use crate::models::memo::Memo;
+use std::sync::Arc;
 
 /// A distribution D of facet normals m over the upper hemisphere.
 #[derive(Clone, Debug)]
@@ -11,7 +13,7 @@ pub enum Distribution {
     /// Beckmann.
     Beckmann(Beckmann),
     /// Torrance and Sparrow's own.
-    Gaussian(Gaussian),
+    Gaussian(Arc<Gaussian>),
 }
 
 impl Distribution {
@@ -25,9 +27,10 @@ impl Distribution {
         Self::Beckmann(Beckmann { alpha })
     }
 
-    /// A Gaussian of the angle, of this roughness in radians; makes tables.
+    /// A Gaussian of the angle, of this roughness in radians; makes tables, once.
     pub fn gaussian(alpha: Roughness) -> Self {
-        Self::Gaussian(Gaussian::new(alpha))
+        static KNOWN: Memo<[u64; 2], Gaussian> = Memo::new();
+        Self::Gaussian(KNOWN.of([alpha.x, alpha.y].map(f64::to_bits), || Gaussian::new(alpha)))
     }
 
     /// The roughness.

@@ -1,8 +1,8 @@
 //! What the single-scattering GGX lobe loses, tabulated.
 
 use super::chebyshev;
-use std::collections::HashMap;
-use std::sync::{Arc, Mutex, OnceLock, PoisonError, Weak};
+use crate::models::memo::Memo;
+use std::sync::Arc;
 
 /// Panels of the table of the loss and of the density of [`GgxLoss::sample`], and
 /// terms of the polynomial in each: as many as bring the error below 1e-8 for
@@ -40,6 +40,9 @@ pub struct GgxLoss {
 struct LobePanel {
     /// Powers of the place in the panel, −1 to 1, of the density in that place.
     density: [f64; TERMS],
+    /// And of its integral from −1 over the place: c + x Σ c_k xᵏ.
+    constant: f64,
+    integral: [f64; TERMS],
     /// Share of the draws below the panel, and in it.
     below: f64,
     share: f64,
@@ -47,18 +50,10 @@ struct LobePanel {
 
 impl GgxLoss {
     /// The table of this `alpha` in [1e-4, 1], made by quadrature in about a
-    /// millisecond unless some subject has it already.
+    /// millisecond, once.
     pub fn of(alpha: f64) -> Arc<Self> {
-        static TABLES: OnceLock<Mutex<HashMap<u64, Weak<GgxLoss>>>> = OnceLock::new();
-        let tables = || TABLES.get_or_init(Default::default).lock().unwrap_or_else(PoisonError::into_inner);
-        if let Some(table) = tables().get(&alpha.to_bits()).and_then(Weak::upgrade) {
-            return table;
-        }
-        let table = Arc::new(Self::new(alpha));
-        let mut tables = tables();
-        tables.retain(|_, t| t.strong_count() > 0);
-        tables.insert(alpha.to_bits(), Arc::downgrade(&table));
-        table
+        static KNOWN: Memo<u64, GgxLoss> = Memo::new();
+        KNOWN.of(alpha.to_bits(), || Self::new(alpha))
     }
 
     fn new(alpha: f64) -> Self {
@@ -79,15 +74,13 @@ impl GgxLoss {
                 let mu = table.cosine(v);
                 2.0 * table.at(mu) * mu * (mu + alpha) * range * half
             });
-            let share = LobePanel { density, below: 0.0, share: 0.0 }.mass(1.0);
-            table.lobe.push(LobePanel { density, below: table.average, share });
-            table.average += share;
+            let panel = LobePanel::new(density, table.average);
+            table.average += panel.share;
+            table.lobe.push(panel);
         }
         let average = table.average;
         for panel in &mut table.lobe {
-            panel.density.iter_mut().for_each(|c| *c /= average);
-            panel.below /= average;
-            panel.share /= average;
+            *panel = LobePanel::new(panel.density.map(|c| c / average), panel.below / average);
         }
         table
     }
@@ -138,24 +131,31 @@ impl GgxLoss {
                 low = x
             }
             let newton = x - off / value(&panel.density, x);
-            let next = if newton > low && newton < high { newton } else { 0.5 * (low + high) };
-            if (next - x).abs() < 1e-15 {
+            let next = if newton >= low && newton <= high { newton } else { 0.5 * (low + high) };
+            let step = (next - x).abs();
+            x = next;
+            // The error of the next is like the square of this step.
+            if step < SMALL_STEP {
                 break;
             }
-            x = next;
         }
         self.cosine((2.0 * k as f64 + 1.0 + x) * 0.5 / PANELS as f64)
     }
 }
 
 impl LobePanel {
+    /// With this density, of a panel below which is the share `below`.
+    fn new(density: [f64; TERMS], below: f64) -> Self {
+        let integral = std::array::from_fn(|k| density[k] / (k + 1) as f64);
+        let constant = value(&integral, -1.0);
+        let mut panel = Self { density, constant, integral, below, share: 0.0 };
+        panel.share = panel.mass(1.0);
+        panel
+    }
+
     /// The draws from the lower end of the panel to the place `x` in it.
     fn mass(&self, x: f64) -> f64 {
-        let from = |x: f64| {
-            let terms = self.density.iter().enumerate().rev();
-            terms.fold(0.0, |sum, (k, c)| sum * x + c / (k + 1) as f64) * x
-        };
-        from(x) - from(-1.0)
+        self.constant + x * value(&self.integral, x)
     }
 }
 
@@ -166,6 +166,9 @@ fn polynomial<const N: usize>(f: impl FnMut(f64) -> f64) -> [f64; N] {
     powers.resize(N, 0.0);
     powers.try_into().expect("as many as points")
 }
+
+/// A step in a panel after which [`GgxLoss::sample`] is at rounding.
+const SMALL_STEP: f64 = 1e-9;
 
 #[inline]
 fn value(powers: &[f64], x: f64) -> f64 {

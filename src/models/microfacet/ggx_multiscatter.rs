@@ -86,21 +86,30 @@ impl GgxMultiscatter {
     /// of the light.
     #[inline]
     pub(crate) fn share(&self, wo: Direction) -> f64 {
-        let lost = self.loss.at(wo.z.min(1.0));
+        self.share_of(self.lost(wo))
+    }
+
+    #[inline]
+    fn share_of(&self, lost: f64) -> f64 {
         let back = lost * self.made_good;
         back / (1.0 - lost + back)
     }
 
-    /// f of many bounces.
+    /// What the single lobe loses of the light from `w`.
     #[inline]
-    fn multiple(&self, wo: Direction, wi: Direction) -> Spectrum {
-        self.scale * (self.loss.at(wo.z.min(1.0)) * self.loss.at(wi.z.min(1.0)))
+    fn lost(&self, w: Direction) -> f64 {
+        self.loss.at(w.z.min(1.0))
     }
 
     /// The density of wi in the lobe of many bounces.
     #[inline]
     pub(crate) fn multiple_density(&self, wi: Direction) -> f64 {
-        self.loss.at(wi.z.min(1.0)) * wi.z / (PI * self.loss.average())
+        self.density_of(self.lost(wi), wi)
+    }
+
+    #[inline]
+    fn density_of(&self, lost: f64, wi: Direction) -> f64 {
+        lost * wi.z / (PI * self.loss.average())
     }
 }
 
@@ -128,8 +137,8 @@ impl Bsdf for GgxMultiscatter {
         if wo.z <= 0.0 || wi.z <= 0.0 {
             return single;
         }
-        let multiple = self.multiple(wo, wi);
-        Spectrum::from_fn(single.len(), |c| single[c] + multiple[c])
+        let lost = self.lost(wo) * self.lost(wi);
+        Spectrum::from_fn(single.len(), |c| single[c] + self.scale[c] * lost)
     }
 
     #[inline]
@@ -145,7 +154,8 @@ impl Bsdf for GgxMultiscatter {
         if wo.z <= 0.0 {
             return None;
         }
-        let share = self.share(wo);
+        let lost_o = self.lost(wo);
+        let share = self.share_of(lost_o);
         let (chosen, first) = mixture::choose([share, 1.0 - share], u[0]);
         let (wi, single, density, lobe) = if chosen == 0 {
             // From the normal down to the horizon.
@@ -159,9 +169,10 @@ impl Bsdf for GgxMultiscatter {
             let s = self.single.sample(wo, &[first, u[1]], transport)?;
             (s.wi, s.weight * (s.pdf / s.wi.z), s.pdf, s.lobe)
         };
-        let pdf = (1.0 - share) * density + share * self.multiple_density(wi);
-        let multiple = self.multiple(wo, wi);
-        let weight = Spectrum::from_fn(single.len(), |c| (single[c] + multiple[c]) * (wi.z / pdf));
+        let lost_i = self.lost(wi);
+        let pdf = (1.0 - share) * density + share * self.density_of(lost_i, wi);
+        let lost = lost_o * lost_i;
+        let weight = Spectrum::from_fn(single.len(), |c| (single[c] + self.scale[c] * lost) * (wi.z / pdf));
         // Within 1e-150 of the horizon f is beyond f64.
         let valid = pdf > 0.0 && pdf.is_finite() && weight[0].is_finite();
         valid.then_some(Sample { wi, weight, pdf, lobe })
@@ -241,7 +252,8 @@ mod tests {
                     .map(|k| {
                         let s = (f64::from(k) + 0.5) / f64::from(n);
                         let wi = Direction::from_angles(s.powi(4).acos(), 2.0);
-                        model.multiple(view(theta), wi)[0] * s.powi(7) * 4.0 / f64::from(n)
+                        model.scale[0] * model.lost(view(theta)) * model.lost(wi) * s.powi(7) * 4.0
+                            / f64::from(n)
                     })
                     .sum();
                 let lost = model.loss.at(view(theta).z);

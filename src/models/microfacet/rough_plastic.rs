@@ -6,8 +6,11 @@ use crate::bsdf::{Bsdf, Description, Direction, Lobe, Sample, Spectrum, Transpor
 use crate::models::coated_base::{CoatedBase, Lobes};
 use crate::models::fresnel;
 use crate::models::lambert::sample_cosine;
+use crate::models::memo::Memo;
 use crate::registry::{Model, Parameters};
 use std::f64::consts::PI;
+use std::mem::{Discriminant, discriminant};
+use std::sync::Arc;
 
 /// [Torrance and Sparrow's](TorranceSparrow) reflection of dielectric facets, and
 /// through them a Lambertian base: f = F D G2/(4 cos θo cos θi) + T(wo) T(wi) ρ/(π η²
@@ -23,7 +26,7 @@ use std::f64::consts::PI;
 pub struct RoughPlastic {
     pub(crate) reflectance: f64,
     pub(crate) coat: TorranceSparrow,
-    passing: Transmittance,
+    passing: Arc<Transmittance>,
     base: CoatedBase,
 }
 
@@ -52,13 +55,16 @@ impl RoughPlastic {
     }
 
     /// With an isotropic coat of index `eta` > 1 over a base of `reflectance` in
-    /// [0, 1]; makes a table in about 10 ms. `Err` with the reason for an anisotropic
+    /// [0, 1]; makes a table in about 10 ms, once. `Err` with the reason for an anisotropic
     /// coat, and where [`TorranceSparrow`] cannot be drawn by visible normals.
     pub fn new(distribution: Distribution, eta: f64, reflectance: f64) -> Result<Self, String> {
         if !distribution.alpha().is_isotropic() {
             return Err("the coat must be as rough along both tangents: its albedo has no azimuth".into());
         }
-        let passing = Transmittance::new(&distribution, |cos| fresnel::dielectric(cos, eta));
+        static KNOWN: Memo<(Discriminant<Distribution>, [u64; 2]), Transmittance> = Memo::new();
+        let key = (discriminant(&distribution), [distribution.alpha().x, eta].map(f64::to_bits));
+        let passing =
+            KNOWN.of(key, || Transmittance::new(&distribution, |cos| fresnel::dielectric(cos, eta)));
         let base = CoatedBase::new(reflectance, eta, passing.mean);
         let facets = Fresnel::Dielectric(eta);
         let coat = TorranceSparrow::new(distribution, Masking::Smith, facets, NormalSampling::Visible)?;
