@@ -54,11 +54,6 @@ impl Matrix {
         self.values.chunks_exact(self.columns)
     }
 
-    fn transposed(&self) -> Self {
-        let values = (0..self.columns).flat_map(|c| self.rows().map(move |r| r[c])).collect();
-        Self { columns: self.len(), values }
-    }
-
     /// Its factors of `rank` columns and rows, with the smallest Kullback–Leibler
     /// divergence Σ v ln(v/w) − v + w that at most `updates` multiplicative updates
     /// reach (D. D. Lee and H. S. Seung, *Algorithms for non-negative matrix
@@ -66,45 +61,37 @@ impl Matrix {
     /// to have too little somewhere than too much. No random numbers: the start are
     /// the rows that are farthest from each other.
     pub fn factored(&self, rank: usize, updates: usize) -> Factors {
-        let Factors { mut left, right } = self.start(rank);
-        let (across, mut right) = (self.transposed(), right.transposed());
-        self.converge(updates, || {
-            right = updated(&right, &across, &left.transposed());
-            let now = right.transposed();
-            left = updated(&left, self, &now);
-            Factors { left: left.clone(), right: now }
-        })
-        .unwrap_or_else(|| self.start(rank))
+        let mut factors = self.start(rank);
+        self.converge(&mut factors, updates, |factors| {
+            update_right(factors, self);
+            update_left(factors, self);
+        });
+        factors
     }
 
     /// The left factor that goes best with a given right one: for each row the
     /// weights of a mixture, a convex problem.
     pub fn weights(&self, right: &Self, updates: usize) -> Self {
         let even = vec![1.0 / right.len() as f64; right.len() * self.len()];
-        let mut left = Self::new(right.len(), even);
-        let made = self.converge(updates, || {
-            left = updated(&left, self, right);
-            Factors { left: left.clone(), right: right.clone() }
-        });
-        made.map_or(left, |f| f.left)
+        let mut factors = Factors { left: Self::new(right.len(), even), right: right.clone() };
+        self.converge(&mut factors, updates, |factors| update_left(factors, self));
+        factors.left
     }
 
     /// Calls `update` as often as it helps, at most `updates` times.
-    fn converge(&self, updates: usize, mut update: impl FnMut() -> Factors) -> Option<Factors> {
+    fn converge(&self, factors: &mut Factors, updates: usize, update: impl Fn(&mut Factors)) {
         let mass: f64 = self.values.iter().sum();
-        let (mut last, mut made) = (f64::INFINITY, None);
+        let mut last = f64::INFINITY;
         for k in 1..=updates {
-            let factors = update();
+            update(factors);
             if k % 10 == 0 {
-                let now = self.divergence(&factors);
+                let now = self.divergence(factors);
                 if !(last - now > CONVERGED * mass) {
-                    return Some(factors);
+                    return;
                 }
                 last = now;
             }
-            made = Some(factors);
         }
-        made
     }
 
     /// The Kullback–Leibler divergence of the factors' product from this.
@@ -151,6 +138,7 @@ impl Factors {
     }
 }
 
+#[inline(always)]
 fn product_row(left: &[f64], right: &Matrix, out: &mut [f64]) {
     out.fill(0.0);
     for (l, right) in left.iter().zip(right.rows()) {
@@ -158,24 +146,61 @@ fn product_row(left: &[f64], right: &Matrix, out: &mut [f64]) {
     }
 }
 
+/// Less is no divisor: what has no part in a product does not divide by 0.
+const LEAST: f64 = 1e-150;
+
 /// One update of the left factor of `v`: l ← l · Σ_c r_c v_c/(l r)_c / Σ_c r_c.
-fn updated(left: &Matrix, v: &Matrix, right: &Matrix) -> Matrix {
-    // What has no part in a product does not divide by 0.
-    const LEAST: f64 = 1e-150;
+fn update_left(Factors { left, right }: &mut Factors, v: &Matrix) {
     let sums: Vec<f64> = right.rows().map(|r| r.iter().sum::<f64>().max(LEAST)).collect();
-    let mut out = left.clone();
     let mut ratio = vec![0.0; v.columns];
-    for (row, mine) in v.rows().zip(out.values.chunks_exact_mut(left.columns)) {
-        product_row(mine, right, &mut ratio);
-        ratio.iter_mut().zip(row).for_each(|(q, v)| *q = v / q.max(LEAST));
+    for (row, mine) in v.rows().zip(left.values.chunks_exact_mut(right.len())) {
+        pulp::Arch::new().dispatch(Ratio { mine, right, row, ratio: &mut ratio });
         for ((l, right), sum) in mine.iter_mut().zip(right.rows()).zip(&sums) {
-            *l *= dot(right, &ratio) / sum;
+            *l *= pulp::Arch::new().dispatch(|| dot(right, &ratio)) / sum;
         }
     }
-    out
+}
+
+/// And of the right one: r ← r · Σ_i l_i v_i/(l r)_i / Σ_i l_i.
+fn update_right(Factors { left, right }: &mut Factors, v: &Matrix) {
+    let mut sums = vec![0.0; right.len()];
+    let mut gains = Matrix::new(right.columns, vec![0.0; right.values.len()]);
+    let mut ratio = vec![0.0; v.columns];
+    for (row, mine) in v.rows().zip(left.rows()) {
+        pulp::Arch::new().dispatch(Ratio { mine, right, row, ratio: &mut ratio });
+        for ((l, gains), sum) in mine.iter().zip(gains.values.chunks_exact_mut(v.columns)).zip(&mut sums) {
+            *sum += l;
+            pulp::Arch::new().dispatch(|| gains.iter_mut().zip(&ratio).for_each(|(g, q)| *g += l * q));
+        }
+    }
+    let rows = right.values.chunks_exact_mut(v.columns).zip(gains.rows());
+    for ((row, gains), sum) in rows.zip(sums) {
+        let sum = sum.max(LEAST);
+        row.iter_mut().zip(gains).for_each(|(r, g)| *r *= g / sum);
+    }
+}
+
+/// v/(l r) of a row of v, with `mine` of l, into `ratio`.
+struct Ratio<'a> {
+    mine: &'a [f64],
+    right: &'a Matrix,
+    row: &'a [f64],
+    ratio: &'a mut [f64],
+}
+
+impl pulp::NullaryFnOnce for Ratio<'_> {
+    type Output = ();
+
+    #[inline(always)]
+    fn call(self) {
+        product_row(self.mine, self.right, self.ratio);
+        let ratios = self.ratio.iter_mut().zip(self.row);
+        ratios.for_each(|(q, v)| *q = v / if *q > LEAST { *q } else { LEAST });
+    }
 }
 
 /// Σ a b, in lanes that a processor adds at once.
+#[inline(always)]
 fn dot(a: &[f64], b: &[f64]) -> f64 {
     const LANES: usize = 8;
     let mut sums = [0.0; LANES];

@@ -158,7 +158,8 @@ fn root(curve: [f64; 3], mass: f64) -> f64 {
         *if error > 0.0 { &mut high } else { &mut low } = a;
         let next = a - error / bezier(curve, a);
         let next = if next >= low && next <= high { next } else { 0.5 * (low + high) };
-        if (next - a).abs() <= f64::EPSILON * a {
+        // The error of the next is like the square of this step.
+        if (next - a).abs() <= 1e-10 * a {
             return next;
         }
         a = next;
