@@ -31,7 +31,7 @@ impl Beckmann {
     /// rational fit; Heitz 2014, eq. 66).
     pub fn backfacing_area(&self, w: Direction) -> f64 {
         let s = self.alpha.scale(w);
-        let t = s.x.hypot(s.y);
+        let t = (s.x * s.x + s.y * s.y).sqrt();
         if t == 0.0 { 0.0 } else { tail(t, s.z, s.z / t) }
     }
 
@@ -47,7 +47,7 @@ impl Beckmann {
     /// 2014), with the distribution function of the slope inverted to rounding.
     pub fn sample_visible(&self, wo: Direction, u: &[f64]) -> Direction {
         let w = self.alpha.scale(wo).normalized();
-        let t = w.x.hypot(w.y);
+        let t = (w.x * w.x + w.y * w.y).sqrt();
         let (cos, sin) = if t > 0.0 { (w.x / t, w.y / t) } else { (1.0, 0.0) };
         // Slopes towards the view and across, of unit roughness. Across, the
         // view does not matter.

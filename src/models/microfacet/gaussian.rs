@@ -228,21 +228,21 @@ impl Shares {
     fn new(alpha: Roughness, cos_2psi: f64) -> Self {
         let (c2, s2) = (0.5 * (1.0 + cos_2psi), 0.5 * (1.0 - cos_2psi));
         let alpha = (alpha.x * alpha.x * c2 + alpha.y * alpha.y * s2).sqrt();
-        let horizon = Self::series(alpha, FRAC_PI_2);
+        let horizon = Self::series(alpha, FRAC_PI_2).0;
         let cut = -(-(FRAC_PI_2 / alpha).powi(2)).exp_m1();
-        Self { alpha, horizon, all: Self::series(alpha, 0.0) - horizon, cut }
+        Self { alpha, horizon, all: Self::series(alpha, 0.0).0 - horizon, cut }
     }
 
     /// ∫ exp(−t²/α²) sin t cos t dt/α² from `theta` to infinity: with y = θ²/α²,
     /// the series of sin 2t leads to ½ e^{−y} Σ_k a_k Σ_{j≤k} y^j/j!,
     /// a_k = (−4α²)^k k!/(2k + 1)!. For α ≤ 1 and θ ≤ π/2 it converges in 25
-    /// terms, none much larger than the sum.
-    fn series(alpha: f64, theta: f64) -> f64 {
+    /// terms, none much larger than the sum. And e^{−y}.
+    fn series(alpha: f64, theta: f64) -> (f64, f64) {
         let a2 = alpha * alpha;
         let y = theta * theta / a2;
         // Beyond is less than the smallest step of u by a factor of 1e6.
         if y > 50.0 {
-            return 0.0;
+            return (0.0, 0.0);
         }
         let decay = (-y).exp();
         let (mut a, mut power, mut partial, mut sum) = (1.0, 1.0, 1.0, 1.0);
@@ -256,7 +256,7 @@ impl Shares {
                 break;
             }
         }
-        0.5 * decay * sum
+        (0.5 * decay * sum, decay)
     }
 
     /// θ below which would be the share `u` were θ² exponential up to the
@@ -278,14 +278,15 @@ impl Shares {
         }
         for _ in 0..100 {
             theta = if theta > low && theta < high { theta } else { 0.5 * (low + high) };
-            let beyond = Self::series(self.alpha, theta) - self.horizon;
+            let (beyond, decay) = Self::series(self.alpha, theta);
+            let beyond = beyond - self.horizon;
             if beyond > wanted {
                 low = theta;
             } else {
                 high = theta;
             }
             let (sin, cos) = theta.sin_cos();
-            let slope = (-theta * theta / a2).exp() * sin * cos / a2;
+            let slope = decay * sin * cos / a2;
             // ln_1p keeps small excesses; NaN or infinity fall to bisection.
             let newton = beyond * ((beyond - wanted) / wanted).ln_1p() / slope;
             let curvature = cos / sin - sin / cos - 2.0 * theta / a2 + slope / beyond;
@@ -322,10 +323,10 @@ mod tests {
             let start = Start::new(Roughness { x: 1e-4, y: 1.0 });
             for i in 0..=1000 {
                 let u = (f64::from(i) / 1000.0).clamp(0.0, 1.0 - f64::EPSILON / 2.0);
-                let beyond = Shares::series(alpha, shares.invert(u, 1.0)) - shares.horizon;
+                let beyond = Shares::series(alpha, shares.invert(u, 1.0)).0 - shares.horizon;
                 assert!((beyond / shares.all - (1.0 - u)).abs() < 2e-15, "{alpha} {u}");
                 let theta = shares.invert(u, start.ratio(alpha, u));
-                let beyond = Shares::series(alpha, theta) - shares.horizon;
+                let beyond = Shares::series(alpha, theta).0 - shares.horizon;
                 assert!((beyond / shares.all - (1.0 - u)).abs() < 2e-15, "{alpha} {u}");
             }
         }
@@ -356,7 +357,7 @@ mod tests {
                     weight * f(theta + h * f64::from(k))
                 })
                 .sum();
-            let value = Shares::series(alpha, theta) - Shares::series(alpha, FRAC_PI_2);
+            let value = Shares::series(alpha, theta).0 - Shares::series(alpha, FRAC_PI_2).0;
             assert!((value - sum * h / 3.0).abs() < 1e-13, "{alpha} {theta}");
         }
     }
