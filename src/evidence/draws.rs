@@ -17,6 +17,10 @@ pub const BLOCK: u64 = 4096;
 /// for multiple importance sampling.
 const PER_LIGHT: u64 = 8;
 
+/// Draws of the cosine in a block, in whole vectors.
+const LIGHTS: usize = (BLOCK / PER_LIGHT) as usize;
+const _: () = assert!(LIGHTS.is_multiple_of(LANES));
+
 /// More different discrete directions than this are not told apart.
 const MOST_DISCRETE: usize = 16;
 
@@ -92,7 +96,7 @@ impl Sums {
                 column.extend(rows.chunks_exact(channels).map(|row| row[c]));
             }
             let values = if channels > 1 { &column } else { rows };
-            let [sum, square, largest] = pulp::Arch::new().dispatch(|| summed(values));
+            let [sum, square, largest] = pulp::Arch::new().dispatch(Summed(values));
             (sums.sum[c], sums.square[c]) = (sum, square);
             sums.largest = Figure(sums.largest.0.max(largest));
         }
@@ -120,26 +124,32 @@ fn scale(rows: &mut [f64], channels: usize, factors: &[f64]) {
 
 /// Sum, sum of squares and maximum, in [`LANES`] partial sums side by side: a single one
 /// waits for each addition.
-#[inline(always)]
-fn summed(values: &[f64]) -> [f64; 3] {
-    let (mut sum, mut square, mut largest) = ([0.0; LANES], [0.0; LANES], [0.0f64; LANES]);
-    let mut add = |lane: usize, value: f64| {
-        let value = if value < LARGEST { value } else { LARGEST };
-        sum[lane] += value;
-        square[lane] += value * value;
-        largest[lane] = if value > largest[lane] { value } else { largest[lane] };
-    };
-    let (many, rest) = values.as_chunks::<LANES>();
-    for values in many {
-        for (lane, value) in values.iter().enumerate() {
+struct Summed<'a>(&'a [f64]);
+
+impl pulp::NullaryFnOnce for Summed<'_> {
+    type Output = [f64; 3];
+
+    #[inline(always)]
+    fn call(self) -> [f64; 3] {
+        let (mut sum, mut square, mut largest) = ([0.0; LANES], [0.0; LANES], [0.0f64; LANES]);
+        let mut add = |lane: usize, value: f64| {
+            let value = if value < LARGEST { value } else { LARGEST };
+            sum[lane] += value;
+            square[lane] += value * value;
+            largest[lane] = if value > largest[lane] { value } else { largest[lane] };
+        };
+        let (many, rest) = self.0.as_chunks::<LANES>();
+        for values in many {
+            for (lane, value) in values.iter().enumerate() {
+                add(lane, *value);
+            }
+        }
+        for (lane, value) in rest.iter().enumerate() {
             add(lane, *value);
         }
+        let total = |lanes: [f64; LANES]| lanes.iter().sum();
+        [total(sum), total(square), largest.into_iter().fold(0.0, f64::max)]
     }
-    for (lane, value) in rest.iter().enumerate() {
-        add(lane, *value);
-    }
-    let total = |lanes: [f64; LANES]| lanes.iter().sum();
-    [total(sum), total(square), largest.into_iter().fold(0.0, f64::max)]
 }
 
 /// What `samples` draws of one attempt gave.
@@ -201,17 +211,47 @@ impl CosineDensity {
     }
 }
 
-/// A direction of that distribution.
-#[inline(always)]
-fn cosine_direction(setup: &Setup, u: [f64; 3]) -> Direction {
-    let r = u[0].sqrt();
-    let (sin, cos) = sin_cos_turns(u[1]);
-    let z = (1.0 - u[0]).sqrt().copysign(setup.wo.z);
-    let other = match (setup.claims.reflective, setup.claims.transmissive) {
-        (true, true) => u[2] < 0.5,
-        (reflective, _) => !reflective,
-    };
-    Direction::new(r * cos, r * sin, if other { -z } else { z })
+/// Directions of that distribution, drawn by `u`, eight at a time.
+struct CosineDirections<'a> {
+    /// On which side wo is.
+    side: f64,
+    /// The share of the directions that are on the other side.
+    other: f64,
+    u: &'a [[f64; 3]],
+    directions: &'a mut [Direction],
+}
+
+impl<'a> CosineDirections<'a> {
+    fn new(setup: &Setup, u: &'a [[f64; 3]], directions: &'a mut [Direction]) -> Self {
+        let other = match (setup.claims.reflective, setup.claims.transmissive) {
+            (true, true) => 0.5,
+            (reflective, _) => f64::from(u8::from(!reflective)),
+        };
+        Self { side: 1f64.copysign(setup.wo.z), other, u, directions }
+    }
+}
+
+impl pulp::NullaryFnOnce for CosineDirections<'_> {
+    type Output = ();
+
+    #[inline(always)]
+    fn call(self) {
+        let (u, _) = self.u.as_chunks::<LANES>();
+        let (directions, _) = self.directions.as_chunks_mut::<LANES>();
+        for (u, d) in u.iter().zip(directions) {
+            let [u, turns, choice]: [[f64; LANES]; 3] = [0, 1, 2].map(|c| std::array::from_fn(|k| u[k][c]));
+            let (mut x, mut y, mut z) = ([0.0; LANES], [0.0; LANES], [0.0; LANES]);
+            for k in 0..LANES {
+                let r = u[k].sqrt();
+                let (sin, cos) = sin_cos_turns(turns[k]);
+                (x[k], y[k]) = (r * cos, r * sin);
+                z[k] = (1.0 - u[k]).sqrt() * if choice[k] < self.other { -self.side } else { self.side };
+            }
+            for k in 0..LANES {
+                d[k] = Direction::new(x[k], y[k], z[k]);
+            }
+        }
+    }
 }
 
 /// What counting needs to know of a leaf.
@@ -380,11 +420,10 @@ impl Draws {
         if setup.mis {
             scale(&mut samples.weight, channels, balance);
             self.mis_sampler.append(&Sums::of(&samples.weight, channels));
-            lights.clear();
-            u.resize((3 * BLOCK / PER_LIGHT) as usize, 0.0);
+            u.resize(3 * LIGHTS, 0.0);
+            lights.resize(LIGHTS, Direction::default());
             stream.fill(false, u);
-            let u = u.as_chunks().0;
-            pulp::Arch::new().dispatch(|| lights.extend(u.iter().map(|u| cosine_direction(setup, *u))));
+            pulp::Arch::new().dispatch(CosineDirections::new(setup, u.as_chunks().0, lights));
             meter.eval(setup.wo, lights, setup.transport, value)?;
             meter.pdf(setup.wo, lights, setup.transport, density)?;
             let factor =
