@@ -7,6 +7,7 @@ use super::variants::variants;
 use crate::bsdf::{Claims, Subject, SubjectKind};
 use crate::evidence::{Company, Meter};
 use crate::registry::{Kind, Model, Parameters, Registry, Resolved, Spelling, Value, nearest};
+use rayon::prelude::*;
 use std::collections::HashSet;
 use std::ops::Range;
 use std::sync::Arc;
@@ -64,17 +65,22 @@ impl Combinations {
         }
         let mut found = Self { levels, all: Vec::new(), refused: 0, spellings: HashSet::new() };
         let mut first_error = None;
-        for row in product(&found.levels.clone()) {
+        let spelled = |row: Vec<usize>| {
             let given = values.iter().zip(&row).map(|(list, k)| list[*k].clone()).collect();
-            let spelling = Spelling { name: model.name().into(), parameters: given };
-            match registry.resolve(&spelling) {
+            Spelling { name: model.name().into(), parameters: given }
+        };
+        let spellings: Vec<Spelling> = product(&found.levels).map(spelled).collect();
+        // Some models make tables.
+        let all: Vec<_> = spellings.par_iter().map(|spelling| registry.resolve(spelling)).collect();
+        for (spelling, resolved) in spellings.iter().zip(all) {
+            match resolved {
                 Ok(resolved) => found.add(registry, &model, entry, &reference, resolved),
                 Err(e) => {
                     found.refused += 1;
                     found.all.push(None);
                     // A file that cannot be read is no combination to leave out.
                     if model.parameters().iter().any(|p| p.kind == Kind::File) {
-                        mistakes.push(Mistake::of_registry(place_of(entry, &spelling), &e));
+                        mistakes.push(Mistake::of_registry(place_of(entry, spelling), &e));
                     } else {
                         first_error.get_or_insert(e);
                     }
