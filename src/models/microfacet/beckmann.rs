@@ -44,14 +44,17 @@ impl Beckmann {
 
     /// A normal visible from `wo` (E. Heitz and E. d'Eon, *Importance sampling
     /// microfacet-based BSDFs using the distribution of visible normals*, EGSR
-    /// 2014), with the distribution function of the slope inverted to rounding.
-    pub fn sample_visible(&self, wo: Direction, u: &[f64]) -> Direction {
-        let w = self.alpha.scale(wo).normalized();
+    /// 2014), with the distribution function of the slope inverted to rounding;
+    /// `backfacing` is wo's [backfacing area](Self::backfacing_area).
+    pub fn sample_visible(&self, wo: Direction, backfacing: f64, u: &[f64]) -> Direction {
+        let scaled = self.alpha.scale(wo);
+        let per_length = 1.0 / scaled.length();
+        let w = scaled * per_length;
         let t = (w.x * w.x + w.y * w.y).sqrt();
         let (cos, sin) = if t > 0.0 { (w.x / t, w.y / t) } else { (1.0, 0.0) };
         // Slopes towards the view and across, of unit roughness. Across, the
         // view does not matter.
-        let p = visible_slope(w.z, t, u[0]);
+        let p = visible_slope(w.z, t, w.z + backfacing * per_length, u[0]);
         let q = gaussian_slope(u[1]);
         self.alpha.scale(Direction::new(cos * p - sin * q, sin * p + cos * q, 1.0)).normalized()
     }
@@ -81,21 +84,21 @@ fn gaussian_slope(u: f64) -> f64 {
     }
 }
 
-/// The slope p > −z/t with a density like (z + t p) exp(−p²) below which is the
-/// share `u`; (t, z) is a unit vector.
+/// The slope p > −z/t with the density (z + t p) exp(−p²)/√π, of which there is `all`,
+/// below which is the share `u`; (t, z) is a unit vector.
 #[inline]
-fn visible_slope(z: f64, t: f64, u: f64) -> f64 {
+fn visible_slope(z: f64, t: f64, all: f64, u: f64) -> f64 {
     if t == 0.0 {
         return gaussian_slope(u);
     }
-    search(z, t, u, START.at(z, t, u))
+    search(z, t, all, u, START.at(z, t, u))
 }
 
 /// As [`visible_slope`], from `p` by a method of third order inside a bracket.
-fn search(z: f64, t: f64, u: f64, mut p: f64) -> f64 {
+fn search(z: f64, t: f64, all: f64, u: f64, mut p: f64) -> f64 {
     // Beyond 6.2 there is less than the smallest step of u.
     let (mut low, mut high) = ((-z / t).max(-6.2), 6.2);
-    let wanted = (1.0 - u) * (z + tail(t, z, z / t));
+    let wanted = (1.0 - u) * all;
     for _ in 0..100 {
         p = if p > low && p < high { p } else { 0.5 * (low + high) };
         let decay = (-p * p).exp();
@@ -147,10 +150,11 @@ impl Start {
             let view = (k as f64 / STEPS_VIEW as f64).min(1.0 - 1e-9);
             let length = view.hypot(1.0 - view);
             let (z, t) = (view / length, (1.0 - view) / length);
+            let all = z + tail(t, z, z / t);
             (0..=STEPS_SHARE).map(move |j| {
                 let r = j as f64 / SHARE_SCALE;
                 let u = (-(-r * r).exp_m1()).clamp(1e-6, 1.0 - f64::EPSILON);
-                search(z, t, u, z * gaussian_slope(u) + (1.0 - z) * r)
+                search(z, t, all, u, z * gaussian_slope(u) + (1.0 - z) * r)
             })
         };
         Self { slopes: (0..=STEPS_VIEW).flat_map(row).collect() }
@@ -182,8 +186,8 @@ mod tests {
             let z = z.max(0.0);
             for i in 0..=200 {
                 let u = (f64::from(i) / 200.0).clamp(0.0, 1.0 - f64::EPSILON / 2.0);
-                let p = visible_slope(z, t, u);
                 let all = if t > 0.0 { z + tail(t, z, z / t) } else { z };
+                let p = visible_slope(z, t, all, u);
                 let above = tail(t, -z, p) / all;
                 assert!((above - (1.0 - u)).abs() < 2e-15, "{theta} {u} {p}: {above}");
             }

@@ -91,9 +91,21 @@ impl Distribution {
     /// it is known: not for the Gaussian.
     #[inline]
     pub fn sample_visible(&self, wo: Direction, u: &[f64]) -> Option<Direction> {
+        self.sample_visible_of(wo, || self.backfacing_area(wo), u)
+    }
+
+    /// The same where wo's [backfacing area](Self::backfacing_area) may be known; not
+    /// every distribution needs it.
+    #[inline]
+    pub(super) fn sample_visible_of(
+        &self,
+        wo: Direction,
+        backfacing: impl FnOnce() -> f64,
+        u: &[f64],
+    ) -> Option<Direction> {
         match self {
             Self::Ggx(d) => Some(d.sample_visible(wo, u)),
-            Self::Beckmann(d) => Some(d.sample_visible(wo, u)),
+            Self::Beckmann(d) => Some(d.sample_visible(wo, backfacing(), u)),
             Self::Gaussian(_) => None,
         }
     }

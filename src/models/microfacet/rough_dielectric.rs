@@ -204,9 +204,10 @@ impl Bsdf for RoughDielectric {
         let eta = self.relative_eta(wo);
         let given = wo;
         let wo = self.upright(given, given);
+        let o = self.distribution.backfacing_area(wo);
         let m = match self.sampling {
             NormalSampling::All => self.distribution.sample(u),
-            NormalSampling::Visible => self.distribution.sample_visible(wo, u)?,
+            NormalSampling::Visible => self.distribution.sample_visible_of(wo, || o, u)?,
         };
         let cos_o = wo.dot(m);
         if cos_o <= 0.0 {
@@ -230,7 +231,6 @@ impl Bsdf for RoughDielectric {
             (wi, Facet::refracting(m, cos_o, cos_i, length, eta), Lobe::GLOSSY_TRANSMISSION)
         };
         // D, the part and the spread are factors of both f and pdf.
-        let o = self.distribution.backfacing_area(wo);
         let seen = self.density_factor(wo, &facet, || o);
         let pdf = self.distribution.density(m) * facet.part * facet.spread * seen;
         let weight = self.geometry(wo, wi, o) * wi.z.abs() / seen * Self::per_mode(wi, eta, transport);

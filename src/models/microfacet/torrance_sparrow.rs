@@ -149,9 +149,15 @@ impl TorranceSparrow {
     /// A normal as it is drawn for wo; it may face away.
     #[inline]
     pub(crate) fn facet(&self, wo: Direction, u: &[f64]) -> Option<Direction> {
+        self.facet_of(wo, || self.masked_area(wo), u)
+    }
+
+    /// The same; `o` gives the masked area of wo where it is needed.
+    #[inline]
+    fn facet_of(&self, wo: Direction, o: impl FnOnce() -> f64, u: &[f64]) -> Option<Direction> {
         match (self.sampling, self.masking) {
             (NormalSampling::All, _) => Some(self.distribution.sample(u)),
-            (NormalSampling::Visible, Masking::Smith) => self.distribution.sample_visible(wo, u),
+            (NormalSampling::Visible, Masking::Smith) => self.distribution.sample_visible_of(wo, o, u),
             (NormalSampling::Visible, Masking::VCavity) => {
                 Some(v_cavity::visible_wall(wo, self.distribution.sample(u), u[2]))
             }
@@ -186,6 +192,24 @@ impl TorranceSparrow {
             (NormalSampling::Visible, Masking::Smith) => 0.25 / (wo.z + o()),
             (NormalSampling::Visible, Masking::VCavity) => 0.25 * v_cavity::masking_over_cosine(wo, m, om),
         }
+    }
+
+    /// A draw for a wo above the surface of the masked area `o`.
+    #[inline]
+    fn draw(&self, wo: Direction, o: f64, u: &[f64]) -> Option<Sample> {
+        let m = self.facet_of(wo, || o, u)?;
+        let om = wo.dot(m);
+        let wi = wo.reflected(m);
+        if om <= 0.0 || wi.z <= 0.0 {
+            return None;
+        }
+        // D is a factor of both f and pdf, and wo's masking area of both others.
+        let factor = self.density_factor(wo, m, om, || o);
+        let pdf = self.distribution.density(m) * factor;
+        let weight = self.reflected(om, self.geometry(wo, wi, m, om, o) * wi.z / factor);
+        // Within 1e-150 of the horizon f is beyond f64.
+        let valid = pdf > 0.0 && pdf.is_finite() && weight[0].is_finite();
+        valid.then_some(Sample { wi, weight, pdf, lobe: Lobe::GLOSSY_REFLECTION })
     }
 }
 
@@ -232,20 +256,7 @@ impl Bsdf for TorranceSparrow {
             let drawn = view.sample(u);
             return drawn.map(|(wi, weight, pdf)| Sample { wi, weight, pdf, lobe: Lobe::GLOSSY_REFLECTION });
         }
-        let m = self.facet(wo, u)?;
-        let om = wo.dot(m);
-        let wi = wo.reflected(m);
-        if om <= 0.0 || wi.z <= 0.0 {
-            return None;
-        }
-        // D is a factor of both f and pdf, and wo's masking area of both others.
-        let o = self.masked_area(wo);
-        let factor = self.density_factor(wo, m, om, || o);
-        let pdf = self.distribution.density(m) * factor;
-        let weight = self.reflected(om, self.geometry(wo, wi, m, om, o) * wi.z / factor);
-        // Within 1e-150 of the horizon f is beyond f64.
-        let valid = pdf > 0.0 && pdf.is_finite() && weight[0].is_finite();
-        valid.then_some(Sample { wi, weight, pdf, lobe: Lobe::GLOSSY_REFLECTION })
+        self.draw(wo, self.masked_area(wo), u)
     }
 
     fn eval_rows(
@@ -280,7 +291,12 @@ impl Bsdf for TorranceSparrow {
             view.sample_rows(u.as_chunks().0, out);
             return Ok(());
         }
-        one_by_one(self, wo, u, transport, out)
+        if wo.z <= 0.0 || out.channels != self.channels() {
+            return one_by_one(self, wo, u, transport, out);
+        }
+        let o = self.masked_area(wo);
+        u.chunks_exact(Bsdf::describe(self).dimensions).for_each(|u| out.push(self.draw(wo, o, u).as_ref()));
+        Ok(())
     }
 }
 
@@ -353,6 +369,7 @@ mod tests {
         let mut u: Vec<f64> =
             (0..66).map(|_| (random.next_u64() >> 11) as f64 * f64::EPSILON / 2.0).collect();
         u.extend([0.0, 0.0, LAST, LAST, 0.0, LAST, LAST, 0.0]);
+        let mut models = all();
         for fresnel in [
             Fresnel::None,
             Fresnel::Schlick(0.04),
@@ -361,20 +378,21 @@ mod tests {
         ] {
             for (x, y) in [(1e-4, 1e-4), (0.2, 0.2), (1.0, 0.1)] {
                 let distribution = Distribution::ggx(Roughness { x, y });
-                let model =
-                    TorranceSparrow::new(distribution, Masking::Smith, fresnel, NormalSampling::Visible)
-                        .unwrap();
-                for wo in [0.0, 1.0, 1.5705, 2.0].map(|theta| Direction::from_angles(theta, 0.7)) {
-                    let (mut rows, mut each) = (Samples::default(), Samples::default());
-                    rows.clear(model.channels());
-                    each.clear(model.channels());
-                    model.sample_rows(wo, &u, R, &mut rows).unwrap();
-                    for u in u.chunks_exact(2) {
-                        each.push(model.sample(wo, u, R).as_ref());
-                    }
-                    assert_eq!(rows.lobe, each.lobe);
-                    assert_eq!((rows.wi, rows.weight, rows.pdf), (each.wi, each.weight, each.pdf));
+                let visible = NormalSampling::Visible;
+                models.extend(TorranceSparrow::new(distribution, Masking::Smith, fresnel, visible));
+            }
+        }
+        for model in models {
+            for wo in [0.0, 1.0, 1.5705, 2.0].map(|theta| Direction::from_angles(theta, 0.7)) {
+                let (mut rows, mut each) = (Samples::default(), Samples::default());
+                rows.clear(model.channels());
+                each.clear(model.channels());
+                model.sample_rows(wo, &u, R, &mut rows).unwrap();
+                for u in u.chunks_exact(Bsdf::describe(&model).dimensions) {
+                    each.push(model.sample(wo, u, R).as_ref());
                 }
+                assert_eq!(rows.lobe, each.lobe);
+                assert_eq!((rows.wi, rows.weight, rows.pdf), (each.wi, each.weight, each.pdf));
             }
         }
     }
