@@ -4,8 +4,7 @@ use std::collections::HashMap;
 use std::hash::Hash;
 use std::sync::{Arc, LazyLock, Mutex, PoisonError};
 
-/// Tables kept at most: of all that a large suite comes back to. They have up to
-/// 150 kB each.
+/// Tables kept at most, of up to 150 kB each: the default suite comes back to fewer.
 const MOST: usize = 256;
 
 /// Tables by what they are made of, each made once in a process: cases of a suite, and
