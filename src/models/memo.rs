@@ -4,7 +4,7 @@ use std::collections::HashMap;
 use std::hash::Hash;
 use std::sync::{Arc, LazyLock, Mutex, PoisonError};
 
-/// Tables kept at most, of up to 150 kB each: the default suite comes back to fewer.
+/// Tables of a kind kept at most, of up to 150 kB each; then all are dropped.
 const MOST: usize = 256;
 
 /// Tables by what they are made of, each made once in a process: cases of a suite, and
